@@ -1,0 +1,21 @@
+//! Objects and facts that do not change while a goal is pursued.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Belief, Symbol};
+
+/// What an agent knows of its surroundings beside its belief: objects with their types, and the
+/// facts and values about them that no action changes.
+///
+/// A child agent holds the map of the area it works in and no more; it comes with the parent's
+/// instruction (the paper, section 7), so it belongs to a goal and is suspended with it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Map {
+    /// Object and its type.
+    pub objects: BTreeMap<Symbol, Symbol>,
+    /// Facts and values about them. Those of predicates that do change (a door that is open) are
+    /// what was true when the map was handed over, and go into the receiver's belief.
+    pub facts: Belief,
+}

@@ -1,0 +1,19 @@
+//! The nouns, one a file.
+
+mod atom;
+mod belief;
+mod domain;
+mod execution_model;
+mod expression;
+mod map;
+mod quantity;
+mod symbol;
+
+pub use atom::{Action, Atom, Fact, Task};
+pub use belief::{Belief, FactChange};
+pub use domain::{Domain, Method, Operator};
+pub use execution_model::{ActionModel, ExecutionModel, Projection, Suspension, TaskModel};
+pub use expression::{Condition, Effect, Literal, Number, Parameter, Pattern, Term};
+pub use map::Map;
+pub use quantity::{Cost, Time};
+pub use symbol::Symbol;

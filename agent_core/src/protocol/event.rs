@@ -1,0 +1,151 @@
+//! What an agent says about what it does, for people, logs and experiments.
+
+use serde::{Deserialize, Serialize};
+
+use super::{ActionId, GoalId, Urgency};
+use crate::model::{Action, Cost, Fact, FactChange, Task, Time};
+
+/// Something happened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// On the world's clock.
+    pub at: Time,
+    /// The goal that it is about; `None` for a change of belief.
+    pub goal: Option<GoalId>,
+    /// Entries on the suspended-goal stack when it had happened.
+    pub stack_depth: usize,
+    /// What.
+    pub what: Happening,
+}
+
+/// How a suspended goal was taken up again (decision 12).
+#[derive(Clone, Copy, Debug, Eq, PartialEq, Serialize, Deserialize)]
+pub enum Resumption {
+    /// What was left of the suspended plan is followed, beginning with the suspended action if
+    /// nobody else has done that meanwhile.
+    Continued,
+    /// Another plan that was kept.
+    Alternative,
+    /// A plan that ends as a kept one does and begins otherwise.
+    Repaired,
+    /// A plan that has no end in common with a kept one.
+    Replanned,
+}
+
+/// What happened. The names are those of the JSON events, in other letters.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Happening {
+    /// A goal was acknowledged.
+    GoalAccepted {
+        /// What is to be done.
+        tasks: Vec<Task>,
+        /// Normal or emergency.
+        urgency: Urgency,
+        /// As given.
+        priority: i32,
+    },
+    /// A goal was refused.
+    GoalRejected {
+        /// In words.
+        reason: String,
+    },
+    /// Work on it has begun.
+    GoalStarted,
+    /// It was set aside.
+    GoalSuspended {
+        /// In words: for which goal, by whom.
+        why: String,
+        /// What the executor can pick up again.
+        action: Option<Action>,
+    },
+    /// It was taken up again.
+    GoalResumed {
+        /// Decision 12.
+        how: Resumption,
+        /// In words.
+        why: String,
+        /// Nodes that the planner expanded for it.
+        expanded: u64,
+    },
+    /// It was reached.
+    GoalSucceeded,
+    /// It was given up.
+    GoalFailed {
+        /// In words.
+        reason: String,
+    },
+    /// There is no plan at present; it waits for one of these facts.
+    GoalBlocked {
+        /// What would have to hold.
+        blocked_by: Vec<Fact>,
+    },
+    /// A plan was chosen.
+    PlanSelected {
+        /// First action first.
+        steps: Vec<Action>,
+        /// In the domain's unit.
+        cost: Cost,
+        /// Costs of the plans that were kept beside it.
+        alternatives: Vec<Cost>,
+        /// In words.
+        why: String,
+        /// Nodes that the planner expanded for it.
+        expanded: u64,
+    },
+    /// A kept or followed plan no longer fits the belief.
+    PlanRevised {
+        /// In words.
+        why: String,
+        /// What is left of the plans that were kept.
+        kept: usize,
+    },
+    /// An executor was told to begin.
+    ActionStarted {
+        /// Which execution.
+        id: ActionId,
+        /// What.
+        action: Action,
+    },
+    /// The executor has stopped.
+    ActionSuspended {
+        /// Which execution.
+        id: ActionId,
+        /// What.
+        action: Action,
+    },
+    /// The executor was told to take up its record.
+    ActionResumed {
+        /// Which execution.
+        id: ActionId,
+        /// What.
+        action: Action,
+    },
+    /// A half-done action was undone.
+    ActionRolledBack {
+        /// The execution that undid it.
+        id: ActionId,
+        /// The rollback action.
+        action: Action,
+    },
+    /// It ended.
+    ActionFinished {
+        /// Which execution.
+        id: ActionId,
+        /// What.
+        action: Action,
+        /// Why not, if it failed.
+        failure: Option<String>,
+    },
+    /// The executor was told to drop a record.
+    RecordCleared {
+        /// Which execution.
+        id: ActionId,
+        /// What.
+        action: Action,
+    },
+    /// The belief is different.
+    BeliefChanged {
+        /// How.
+        changes: Vec<FactChange>,
+    },
+}

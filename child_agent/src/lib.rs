@@ -1,0 +1,1 @@
+//! The node level: plans over nodes inside an area and instructs the executor

@@ -1,0 +1,1 @@
+//! Maps and planning domains: the data, and the code that reads and checks them

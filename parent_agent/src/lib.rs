@@ -1,0 +1,1 @@
+//! The area level: plans over areas and instructs a child agent

@@ -1,0 +1,1 @@
+//! Whole stacks in virtual time: the harness, the paper as tests, and the rules of the repository
