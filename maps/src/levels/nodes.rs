@@ -1,0 +1,95 @@
+//! The detailed level: from node to node, one area at a time.
+
+use std::collections::BTreeMap;
+
+use agent_core::model::{Fact, Map, Symbol};
+
+use super::{MapWriter, atom};
+use crate::site::{Node, Passage, Site, metres};
+
+/// One area for the child agent, in the words of `node.hddl`: its nodes and passages, its doors
+/// and what lies right behind them. `None` if there is no such area.
+pub fn node_level(site: &Site, area: &str) -> Option<Map> {
+    let area = site.area(area)?.name();
+    Some(excerpt(
+        site,
+        |passage| site.areas_of(passage).contains(&area),
+        |node| node.area() == area,
+    ))
+}
+
+/// The maps of all areas, by area.
+pub fn area_maps(site: &Site) -> BTreeMap<Symbol, Map> {
+    site.areas()
+        .filter_map(|area| {
+            let map = node_level(site, area.name().as_str())?;
+            Some((area.name().clone(), map))
+        })
+        .collect()
+}
+
+/// The whole site in the words of `node.hddl`, for an agent without a parent.
+pub fn whole_node_level(site: &Site) -> Map {
+    excerpt(site, |_| true, |_| true)
+}
+
+/// What the child agent believes of itself when the robot stands at a node. `None` if there is
+/// no such node.
+pub fn node_start(site: &Site, node: &str) -> Option<Vec<Fact>> {
+    Some(vec![atom("at", &[site.node(node)?.name()])])
+}
+
+/// The nodes that belong, the passages that do, and the nodes at their ends.
+fn excerpt(
+    site: &Site,
+    passage_belongs: impl Fn(&Passage) -> bool,
+    node_belongs: impl Fn(&Node) -> bool,
+) -> Map {
+    let passages: Vec<&Passage> = site.passages().filter(|one| passage_belongs(one)).collect();
+    let ends = passages.iter().flat_map(|passage| passage.ends());
+    let nodes: BTreeMap<&Symbol, &Node> = ends
+        .filter_map(|end| site.node(end.as_str()))
+        .chain(site.nodes().filter(|node| node_belongs(node)))
+        .map(|node| (node.name(), node))
+        .collect();
+
+    let mut map = MapWriter::default();
+    for node in nodes.values() {
+        map.object(node.name(), "node");
+        map.object(node.area(), "area");
+        map.fact("inside", &[node.name(), node.area()]);
+        for (to, length_mm) in site.distances_mm(node, &passage_belongs) {
+            map.value("distance", &[node.name(), to], metres(length_mm));
+        }
+    }
+    for passage in passages {
+        add_passage(&mut map, site, passage);
+    }
+    map.map
+}
+
+fn add_passage(map: &mut MapWriter, site: &Site, passage: &Passage) {
+    let name = passage.name();
+    map.object(name, "arc");
+    map.value("length", &[name], passage.length_m());
+    for end in passage.ends() {
+        // Until the robot stands on the arc and says how far it is.
+        map.value("gap", &[name, end], passage.length_m());
+    }
+    for (from, to) in passage.directions() {
+        match passage.door() {
+            Some(door) => map.fact("gate", &[from, to, name, door]),
+            None => {
+                map.fact("link", &[from, to, name]);
+                // Wherever it stands on the arc; a one-way arc is left at its far end only.
+                map.fact("free", &[name, to]);
+            }
+        }
+    }
+    if let Some(door) = passage.door().and_then(|door| site.door(door.as_str())) {
+        map.object(door.name(), "door");
+        if door.is_open_at_first() {
+            map.fact("open", &[door.name()]);
+        }
+    }
+}
