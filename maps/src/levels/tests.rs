@@ -168,6 +168,36 @@ mod rough_level {
     }
 
     #[test]
+    fn through_a_wide_door_with_two_passages_the_shorter_one_counts() {
+        let point = |id, area, x| {
+            format!(
+                r#"{{"type": "Feature", "properties": {{"id": {id}, "metadata": {{"area": "{area}"}}}}, "geometry": {{"type": "Point", "coordinates": [{x}, 0]}}}}"#
+            )
+        };
+        let line = |id, from, to, name, length_m| {
+            format!(
+                r#"{{"type": "Feature", "properties": {{"id": {id}, "startid": {from}, "endid": {to}, "metadata": {{"name": "{name}", "length_m": {length_m}, "door": "gate"}}}}, "geometry": null}}"#
+            )
+        };
+        let features = [
+            point(1, "hall", 0),
+            point(2, "yard", 4),
+            line(11, 1, 2, "left", 4),
+            line(12, 2, 1, "left", 4),
+            line(13, 1, 2, "right", 6),
+            line(14, 2, 1, "right", 6),
+        ];
+        let doors = r#"{"gate": {"open": true}}"#;
+        let text = format!(
+            r#"{{"type": "FeatureCollection", "doors": {doors}, "features": [{}]}}"#,
+            features.join(", ")
+        );
+        let map = area_level(&Site::from_text("f", &text).expect("sound"));
+        assert_eq!(value(&map, "crossing hall yard gate"), 4.0);
+        assert_eq!(value(&map, "distance yard n1"), 5.0);
+    }
+
+    #[test]
     fn a_distance_is_what_the_cheapest_plan_costs_once_all_doors_are_open() {
         let site = museum();
         let map = area_level(&site);

@@ -90,6 +90,22 @@ fn names_used_twice() {
 }
 
 #[test]
+fn a_name_for_edges_that_are_not_each_others_way_back() {
+    let way_back = "but is not its way back";
+    // In the same direction, in the other one for the second time, and between other nodes.
+    for (from, to) in [(1, 2), (2, 1)] {
+        let found = changed(99, edge(15, from, to, r#""name": "arc1", "length_m": 4"#));
+        assert_findings(&found, &[way_back]);
+    }
+    let mut features = sound();
+    features.push(node("4", "n4", "hall", "[0, 4]"));
+    for (id, from, to) in [(15, 1, 4), (16, 4, 2)] {
+        features.push(edge(id, from, to, r#""name": "arc9", "length_m": 6"#));
+    }
+    assert_findings(&findings(&with(GATE, &features)), &[way_back]);
+}
+
+#[test]
 fn names_that_the_domains_cannot_have() {
     for name in ["the arc", "2nd", "", "gr\u{fc}n"] {
         let found = changed(
