@@ -1,1 +1,9 @@
-//! Whole stacks in virtual time: the harness, the paper as tests, and the rules of the repository
+//! Whole stacks of agents in virtual time: one clock, one wire, and the robots of `executor_sim`.
+
+mod museum;
+mod stack;
+mod wire;
+
+pub use museum::{Museum, agent, museum};
+pub use stack::{Heard, Stack};
+pub use wire::Wire;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Belief, Symbol};
+use super::{Belief, FactChange, Symbol};
 
 /// What an agent knows of its surroundings beside its belief: objects with their types, and the
 /// facts and values about them that no action changes.
@@ -15,7 +15,10 @@ use super::{Belief, Symbol};
 pub struct Map {
     /// Object and its type.
     pub objects: BTreeMap<Symbol, Symbol>,
-    /// Facts and values about them. Those of predicates that do change (a door that is open) are
-    /// what was true when the map was handed over, and go into the receiver's belief.
+    /// Facts and values about them that do not change.
     pub facts: Belief,
+    /// What is known at the time of things in it that do change: a door that is open or closed.
+    /// Goes into the receiver's belief.
+    #[serde(default)]
+    pub news: Vec<FactChange>,
 }

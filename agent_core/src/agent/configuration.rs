@@ -1,0 +1,84 @@
+//! What an agent is made with.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::model::{Domain, ExecutionModel, FactChange, Map, Symbol};
+
+/// What an agent is made with. Two agents that differ in nothing else are at different levels.
+#[derive(Clone, Debug)]
+pub struct Configuration {
+    /// Its name, by which superiors and users know it.
+    pub name: Symbol,
+    /// New, and greater, at every start.
+    pub epoch: u64,
+    /// The domain of its level.
+    pub domain: Arc<Domain>,
+    /// The execution model of its level.
+    pub model: Arc<ExecutionModel>,
+    /// What it knows of its surroundings itself. A child agent has an empty one and is given a
+    /// map with each instruction.
+    pub map: Map,
+    /// The maps that it hands down, by the place that they show.
+    pub maps_below: BTreeMap<Symbol, Map>,
+    /// What it holds to be true at the start.
+    pub facts: Vec<FactChange>,
+    /// Who executes its actions.
+    pub executors: Executors,
+    /// How it behaves.
+    pub policy: Policy,
+}
+
+/// Who executes which actions.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Executors {
+    /// Whoever has no place of its own.
+    pub default: Symbol,
+    /// The executor of a place, for actions whose model names one (`map_of`).
+    pub of_place: BTreeMap<Symbol, Symbol>,
+}
+
+impl Executors {
+    /// One for everything.
+    pub fn one(name: &str) -> Self {
+        Self {
+            default: Symbol::from(name),
+            of_place: BTreeMap::new(),
+        }
+    }
+
+    /// Everyone, without repetition.
+    pub fn all(&self) -> Vec<Symbol> {
+        let mut all: Vec<Symbol> = self.of_place.values().cloned().collect();
+        all.push(self.default.clone());
+        all.sort();
+        all.dedup();
+        all
+    }
+}
+
+/// Settings of behaviour.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Policy {
+    /// Decision 8: an action that the emergency's best plan begins with goes on. Off where the
+    /// paper's tables are reproduced.
+    pub keep_what_helps: bool,
+    /// How many expansions may be spent to find that out before the action is stopped.
+    pub expansions_before_stopping: u64,
+    /// How many expansions are made between two looks at what has come in (decision 9).
+    pub expansions_per_slice: u64,
+    /// How often an action may fail before it is no longer tried for a goal.
+    pub attempts: u32,
+}
+
+impl Default for Policy {
+    fn default() -> Self {
+        Self {
+            keep_what_helps: true,
+            // The naive planner expands some hundred thousand nodes a second: about 2 ms.
+            expansions_before_stopping: 200,
+            expansions_per_slice: 200,
+            attempts: 3,
+        }
+    }
+}

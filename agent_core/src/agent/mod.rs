@@ -1,0 +1,317 @@
+//! The agent: Algorithms 1 to 5 of the paper as one state machine without input or output.
+//!
+//! Each *wait till* of the paper is a state here, and its second thread is only another input. One
+//! goal runs at a time. The same machine serves at every level.
+
+mod aside;
+mod check;
+mod command;
+mod configuration;
+mod emergency;
+mod execution;
+mod goal;
+mod instruct;
+mod intention;
+mod monitor;
+mod planning;
+mod stack;
+mod subplan;
+mod suspension;
+mod waiting;
+
+pub use aside::{GoalsAside, WaitsFor};
+pub use configuration::{Configuration, Executors, Policy};
+pub use goal::Goal;
+pub use intention::{Intention, Record};
+pub use stack::{ResumedBy, SuspendedGoal, SuspendedGoalStack};
+pub use waiting::WaitingGoals;
+
+use std::collections::{BTreeMap, VecDeque};
+use std::convert::Infallible;
+use std::sync::Arc;
+
+use crate::model::{Belief, FactChange, Map, Symbol, Task, Time};
+use crate::planner::{Planner, Step};
+use crate::protocol::{ActionId, GoalId, Happening, Input, Machine, Output, Reply, Report};
+
+/// How many ended goals are remembered, so that a late question is still answered.
+const ENDED_GOALS: usize = 1000;
+/// How many goals one input may carry to an end before others are listened to.
+const ROUNDS_PER_INPUT: usize = 8;
+
+/// A planning agent.
+///
+/// Invariants ([`check`](Self::check) asserts them): a goal is in one place only, be it running,
+/// suspended, waiting or aside; at most one action is being executed; every record belongs to one
+/// intention; the planner thinks only for the running goal.
+#[derive(Clone, Debug)]
+pub struct Agent<P> {
+    configuration: Configuration,
+    planner: P,
+    belief: Belief,
+    /// The map that the running goal is pursued on, or the last one was.
+    map: Arc<Map>,
+    running: Option<Running>,
+    stack: SuspendedGoalStack,
+    waiting: WaitingGoals,
+    aside: GoalsAside,
+    ended: VecDeque<Ended>,
+    /// A superior wants this goal, and what runs above it, suspended.
+    hold: Option<(Symbol, ActionId)>,
+    /// What superiors were last told, in their words.
+    told: Belief,
+    /// Values that executors have named since.
+    new_values: Vec<FactChange>,
+    last_executor: Symbol,
+    next_action: u64,
+    next_goal: u64,
+    now: Time,
+    outputs: VecDeque<Output<Infallible>>,
+}
+
+/// The goal that is pursued at present.
+#[derive(Clone, Debug)]
+struct Running {
+    intention: Intention,
+    phase: Phase,
+    /// Taken from the stack or from aside, and not planned for since.
+    resumed: bool,
+    /// The user wants it set aside.
+    set_aside: bool,
+    /// In words, why the action must stop although the goal goes on.
+    broken: Option<String>,
+    /// Facts have changed that no action of ours was to change: plan again when this action ends.
+    surprised: bool,
+}
+
+/// What is being waited for.
+#[derive(Clone, Debug)]
+enum Phase {
+    /// For the planner.
+    Planning,
+    /// For the end of an action (Algorithm 2, step 7a).
+    Executing(Execution),
+    /// For an action to be suspended or to end (Algorithm 3, step 3c; Algorithm 5, step 4).
+    Stopping(Execution),
+}
+
+/// An action that an executor was told to do.
+#[derive(Clone, Debug, PartialEq)]
+struct Execution {
+    id: ActionId,
+    executor: Symbol,
+    step: Step,
+    /// When it has taken too long.
+    due: Option<Time>,
+}
+
+/// A goal that is over.
+#[derive(Clone, Debug)]
+struct Ended {
+    id: GoalId,
+    tasks: Vec<Task>,
+    superior: Option<(Symbol, ActionId)>,
+    outcome: Report,
+}
+
+impl<P: Planner> Agent<P> {
+    /// An agent that has nothing to do.
+    pub fn new(mut configuration: Configuration, planner: P) -> Self {
+        let mut belief = Belief::default();
+        let mut map = std::mem::take(&mut configuration.map);
+        // What can change is belief, not map.
+        let (changing, fixed): (Vec<_>, Vec<_>) = map
+            .facts
+            .facts()
+            .cloned()
+            .partition(|fact| configuration.model.observable.contains(&fact.name));
+        let mut facts: Belief = fixed.into_iter().collect();
+        for (function, value) in map.facts.values() {
+            facts.apply(&FactChange::Set(function.clone(), value));
+        }
+        map.facts = facts;
+        let changing = changing.into_iter().map(FactChange::Add);
+        for change in changing
+            .chain(map.news.drain(..))
+            .chain(configuration.facts.drain(..))
+        {
+            belief.apply(&change);
+        }
+        let mut agent = Self {
+            last_executor: configuration.executors.default.clone(),
+            configuration,
+            planner,
+            belief,
+            map: Arc::new(map),
+            running: None,
+            stack: SuspendedGoalStack::default(),
+            waiting: WaitingGoals::default(),
+            aside: GoalsAside::default(),
+            ended: VecDeque::new(),
+            hold: None,
+            told: Belief::default(),
+            new_values: Vec::new(),
+            next_action: 1,
+            next_goal: 1,
+            now: Time::ZERO,
+            outputs: VecDeque::new(),
+        };
+        agent.told = crate::planner::project(&agent.problem());
+        agent
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &Symbol {
+        &self.configuration.name
+    }
+
+    /// What it holds to be true.
+    pub fn belief(&self) -> &Belief {
+        &self.belief
+    }
+
+    /// The suspended goals.
+    pub fn stack(&self) -> &SuspendedGoalStack {
+        &self.stack
+    }
+
+    /// The goals that wait for their turn.
+    pub fn waiting(&self) -> &WaitingGoals {
+        &self.waiting
+    }
+
+    /// The goals that wait for something else.
+    pub fn aside(&self) -> &GoalsAside {
+        &self.aside
+    }
+
+    /// The goal that is pursued at present.
+    pub fn running(&self) -> Option<&Intention> {
+        self.running.as_ref().map(|running| &running.intention)
+    }
+
+    /// The action that is being executed, and whether it is to stop.
+    pub fn executing(&self) -> Option<(&ActionId, &Task, bool)> {
+        match &self.running.as_ref()?.phase {
+            Phase::Planning => None,
+            Phase::Executing(execution) => Some((&execution.id, execution.step.action(), false)),
+            Phase::Stopping(execution) => Some((&execution.id, execution.step.action(), true)),
+        }
+    }
+
+    /// Brings the machine to rest: starts, stops and resumes goals until there is only waiting.
+    fn settle(&mut self) {
+        for _ in 0..ROUNDS_PER_INPUT {
+            while self.start_next() {}
+            let Some(running) = &self.running else {
+                return;
+            };
+            match running.phase {
+                Phase::Stopping(_) => return,
+                Phase::Executing(_) => {
+                    self.stop_if_due();
+                    return;
+                }
+                Phase::Planning => {
+                    if self.yields_now() {
+                        continue;
+                    }
+                    let slice = self.configuration.policy.expansions_per_slice;
+                    let Some(outcome) = self.planner.think(slice) else {
+                        return;
+                    };
+                    self.planned(outcome);
+                }
+            }
+        }
+    }
+
+    fn emit(&mut self, goal: Option<&GoalId>, what: Happening) {
+        self.outputs
+            .push_back(Output::Event(crate::protocol::Event {
+                at: self.now,
+                goal: goal.cloned(),
+                stack_depth: self.stack.depth(),
+                what,
+            }));
+    }
+
+    fn all_intentions(&self) -> impl Iterator<Item = &Intention> {
+        let running = self.running.iter().map(|running| &running.intention);
+        let stacked = self.stack.entries().iter().map(|entry| &entry.intention);
+        let aside = self.aside.goals().iter().map(|(intention, _)| intention);
+        running
+            .chain(stacked)
+            .chain(aside)
+            .chain(self.waiting.intentions())
+    }
+
+    /// What superiors and users hear of a goal that has ended.
+    fn remember(&mut self, intention: &Intention, outcome: Report) {
+        if self.ended.len() == ENDED_GOALS {
+            self.ended.pop_front();
+        }
+        self.ended.push_back(Ended {
+            id: intention.goal.id.clone(),
+            tasks: intention.goal.tasks.clone(),
+            superior: intention.goal.superior.clone(),
+            outcome,
+        });
+    }
+
+    /// Counts of goals by where they are: running, suspended, waiting, aside.
+    pub fn counts(&self) -> BTreeMap<&'static str, usize> {
+        BTreeMap::from([
+            ("running", usize::from(self.running.is_some())),
+            ("suspended", self.stack.depth()),
+            ("waiting", self.waiting.intentions().len()),
+            ("aside", self.aside.goals().len()),
+        ])
+    }
+}
+
+impl<P: Planner> Machine for Agent<P> {
+    type In = Infallible;
+    type Out = Infallible;
+
+    fn handle(&mut self, now: Time, input: Input<Infallible>) -> Option<Reply> {
+        self.now = self.now.max(now);
+        let reply = match input {
+            Input::Goal(request) => Some(Reply::Goal(self.accept(request))),
+            Input::Command(command) => Some(Reply::Command(self.command(&command))),
+            Input::Instruction { from, instruction } => {
+                Some(Reply::Instruction(self.instructed(&from, instruction)))
+            }
+            Input::Answer { to, answer } => {
+                self.answered(&to, answer);
+                None
+            }
+            Input::Report { id, report } => {
+                self.reported(&id, report);
+                None
+            }
+            Input::Observation(facts) => {
+                self.observed(&facts);
+                None
+            }
+            Input::Wake => None,
+            Input::Local(never) => match never {},
+        };
+        self.watch_the_clock();
+        self.settle();
+        reply
+    }
+
+    fn poll_output(&mut self) -> Option<Output<Infallible>> {
+        self.outputs.pop_front()
+    }
+
+    fn wake_at(&self) -> Option<Time> {
+        if self.planner.is_thinking() {
+            return Some(Time::ZERO);
+        }
+        let deadlines = self.all_intentions().filter_map(|i| i.goal.deadline);
+        let due = self.running.as_ref().and_then(Running::due);
+        deadlines.chain(due).min()
+    }
+}

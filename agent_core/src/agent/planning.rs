@@ -1,0 +1,241 @@
+//! Steps 3 to 6 of Algorithm 2: planning, selection, and what becomes of suspended actions.
+
+use super::{Agent, Intention, Phase, WaitsFor};
+use crate::model::{Action, Fact};
+use crate::planner::{self, Outcome, Plan, Planner, Problem};
+use crate::protocol::{ActionId, Happening, Resumption};
+
+impl<P: Planner> Agent<P> {
+    /// Step 3: begins to plan for the running goal, over everything that is left of it.
+    pub(super) fn plan(&mut self) {
+        let problem = self.problem();
+        if let Some(running) = &mut self.running {
+            running.phase = Phase::Planning;
+            self.planner.begin(problem, &running.intention.agendas);
+        }
+    }
+
+    /// Steps 4 to 6: plans were found, or it is proved that there are none.
+    pub(super) fn planned(&mut self, outcome: Outcome) {
+        let problem = self.problem();
+        let Some(running) = &mut self.running else {
+            return;
+        };
+        let kept = std::mem::take(&mut running.intention.plans);
+        let valid = still_valid(&problem, kept.clone());
+        let Some((selected, alternatives)) = select(valid, outcome.plans) else {
+            return self.no_plan(outcome.wanted.into_iter().collect());
+        };
+        let how = resumption(&problem, &kept, &selected);
+        let same = how == Resumption::Continued;
+        running.intention.fits = true;
+        running.intention.plans = vec![selected];
+        running.intention.plans.extend(alternatives);
+        running.surprised = false;
+        let goal = running.intention.goal.id.clone();
+        let resumed = std::mem::take(&mut running.resumed);
+        if resumed {
+            let why = self.why_resumed(how, &problem, &kept);
+            self.emit(
+                Some(&goal),
+                Happening::GoalResumed {
+                    how,
+                    why,
+                    expanded: outcome.expanded,
+                },
+            );
+        }
+        self.clear_what_is_not_resumed();
+        if !same {
+            self.tell_plan("it is the cheapest", outcome.expanded);
+        }
+        self.execute_next();
+    }
+
+    /// Announces the plan that is followed.
+    pub(super) fn tell_plan(&mut self, why: &str, expanded: u64) {
+        let Some(running) = &self.running else {
+            return;
+        };
+        let Some((selected, others)) = running.intention.plans.split_first() else {
+            return;
+        };
+        let goal = running.intention.goal.id.clone();
+        let what = Happening::PlanSelected {
+            steps: selected.actions(),
+            cost: selected.cost,
+            alternatives: others.iter().map(|plan| plan.cost).collect(),
+            why: why.to_owned(),
+            expanded,
+        };
+        self.emit(Some(&goal), what);
+    }
+
+    /// Step 5: records that the selected plan does not come back to are dropped. One that it comes
+    /// back to later, after reaching the place for it, is not (decision 13).
+    fn clear_what_is_not_resumed(&mut self) {
+        let Some(running) = &self.running else {
+            return;
+        };
+        let intention = &running.intention;
+        let Some(selected) = intention.plans.first() else {
+            return;
+        };
+        let unneeded: Vec<ActionId> = intention
+            .records
+            .iter()
+            .filter(|record| !selected.needs(&record.id))
+            .map(|record| record.id.clone())
+            .collect();
+        for id in unneeded {
+            self.clear(&id);
+            if let Some(running) = &mut self.running {
+                running.intention.forget(&id);
+            }
+        }
+    }
+
+    /// Step 7e, and decision 7: an executor reports failure, so that its superior plans round what
+    /// is in the way; at the top the goal is blocked, moved aside, and tried again when that
+    /// changes.
+    fn no_plan(&mut self, wanted: Vec<Fact>) {
+        let Some(running) = &self.running else {
+            return;
+        };
+        let intention = &running.intention;
+        if let Some(reason) = &intention.cancelled {
+            let reason = format!("{reason}; what was half done cannot be undone from here");
+            return self.give_up(&reason, Vec::new());
+        }
+        let mut blocked_by = wanted;
+        let named = intention.blocked_by.iter();
+        blocked_by.extend(named.filter(|fact| !self.belief.holds(fact)).cloned());
+        blocked_by.sort();
+        blocked_by.dedup();
+        if intention.goal.superior.is_some() || blocked_by.is_empty() {
+            let mut reason = String::from("there is no plan");
+            if let Some(failure) = &intention.last_failure {
+                reason = format!("{reason}; {failure}");
+            }
+            return self.give_up(&reason, blocked_by);
+        }
+        let Some(mut running) = self.take_running() else {
+            return;
+        };
+        running.intention.failures.clear();
+        running.intention.blocked_by.clear();
+        self.emit(
+            Some(&running.intention.goal.id),
+            Happening::GoalBlocked {
+                blocked_by: blocked_by.clone(),
+            },
+        );
+        let waits_for = WaitsFor::Facts(blocked_by.into_iter().collect());
+        self.aside.add(running.intention, waits_for);
+    }
+
+    /// Decision 12, in words.
+    fn why_resumed(&self, how: Resumption, problem: &Problem, kept: &[Plan]) -> String {
+        let broken = kept
+            .first()
+            .and_then(|plan| planner::simulate(problem, &plan.steps, false).err());
+        match (how, broken) {
+            (Resumption::Continued, _) => "the suspended plan still holds".to_owned(),
+            (_, Some(why)) => why,
+            (_, None) if kept.is_empty() => "there was no plan yet".to_owned(),
+            (_, None) => "another plan is cheaper now".to_owned(),
+        }
+    }
+
+    /// Looks whether the first plans of goals that do not run still hold, and says so where that
+    /// has changed (the plans in the stack are kept up with the belief).
+    pub(super) fn review_plans(&mut self) {
+        let mut broken: Vec<(crate::protocol::GoalId, String, usize)> = Vec::new();
+        let base = self.problem_of(None);
+        let review = |intention: &mut Intention| {
+            let mut problem = base.clone();
+            problem.map = intention.goal.map.clone();
+            let Some(first) = intention.plans.first() else {
+                return;
+            };
+            let verdict = planner::simulate(&problem, &first.steps, false);
+            let fits = verdict.is_ok();
+            if let (true, Err(why)) = (std::mem::replace(&mut intention.fits, fits), verdict) {
+                let others = intention.plans.iter().skip(1);
+                let holding =
+                    others.filter(|p| planner::simulate(&problem, &p.steps, false).is_ok());
+                broken.push((intention.goal.id.clone(), why, holding.count()));
+            }
+        };
+        self.stack.intentions_mut().for_each(review);
+        for (goal, why, kept) in broken {
+            self.emit(Some(&goal), Happening::PlanRevised { why, kept });
+        }
+    }
+
+    /// Applies `change` to every goal but the running one.
+    pub(super) fn each_other_intention(&mut self, change: impl FnMut(&mut Intention)) {
+        self.stack
+            .intentions_mut()
+            .chain(self.aside.intentions_mut())
+            .chain(self.waiting.intentions_mut())
+            .for_each(change);
+    }
+}
+
+/// The plans that still hold, with what they cost now.
+fn still_valid(problem: &Problem, kept: Vec<Plan>) -> Vec<Plan> {
+    kept.into_iter()
+        .filter_map(|mut plan| {
+            let cost = planner::simulate(problem, &plan.steps, false).ok()?;
+            if plan.rest.is_empty() {
+                plan.cost = cost;
+            }
+            Some(plan)
+        })
+        .collect()
+}
+
+/// The cheapest plan first. A kept plan wins against a new one of the same cost, and an earlier
+/// kept one against a later: nothing is changed without a reason.
+fn select(kept: Vec<Plan>, new: Vec<Plan>) -> Option<(Plan, Vec<Plan>)> {
+    let mut plans: Vec<Plan> = Vec::new();
+    let wanted = kept.len().max(new.len());
+    for plan in kept.into_iter().chain(new) {
+        if !plans
+            .iter()
+            .any(|known| known.purposes().eq(plan.purposes()))
+        {
+            plans.push(plan);
+        }
+    }
+    plans.sort_by_key(|plan| plan.cost);
+    plans.truncate(wanted);
+    let mut plans = plans.into_iter();
+    Some((plans.next()?, plans.collect()))
+}
+
+/// Decision 12, told from the plans themselves, so that it means the same with every planner.
+fn resumption(problem: &Problem, kept: &[Plan], selected: &Plan) -> Resumption {
+    let purposes = |plan: &Plan| plan.purposes().cloned().collect::<Vec<Action>>();
+    let now = purposes(selected);
+    let holds = |plan: &Plan| planner::simulate(problem, &plan.steps, false).is_ok();
+    let same = kept
+        .iter()
+        .position(|plan| purposes(plan) == now && holds(plan));
+    match same {
+        Some(0) => Resumption::Continued,
+        Some(_) => Resumption::Alternative,
+        None => {
+            let last = selected.purposes().next_back();
+            let shared = kept
+                .iter()
+                .any(|plan| !plan.steps.is_empty() && plan.purposes().next_back() == last);
+            if shared {
+                Resumption::Repaired
+            } else {
+                Resumption::Replanned
+            }
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! One step of forward-chaining decomposition: from a state and what is to be done to all that may
+//! come next.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::Problem;
+use super::matching::for_each_binding;
+use super::network::{Frame, Item, TaskList};
+use super::plan::Step;
+use super::state::{Bindings, Delta, View, bind_arguments};
+use crate::model::{Cost, Fact, Method, Task, Term};
+
+/// What may come next.
+pub(super) struct Successor {
+    pub delta: Delta,
+    pub tasks: TaskList,
+    /// The action that leads there; `None` if a task was decomposed.
+    pub step: Option<Step>,
+}
+
+/// All successors of doing the first of `tasks` in the state `delta`, in the order in which the
+/// domain writes its methods. `next_frame` numbers the tasks that are decomposed.
+pub(super) fn successors(
+    problem: &Problem,
+    delta: &Delta,
+    tasks: &TaskList,
+    next_frame: &mut u64,
+    wanted: &mut BTreeSet<Fact>,
+) -> Vec<Successor> {
+    let view = View { problem, delta };
+    let Some((item, parent, rest)) = tasks.first() else {
+        return Vec::new();
+    };
+    let task = item.atom();
+    if problem.domain.operators.contains_key(&task.name) {
+        return act(view, item, parent, rest, wanted).into_iter().collect();
+    }
+    let mut found = Vec::new();
+    for method in &problem.domain.methods {
+        let Some(bindings) = bind_head(method, task) else {
+            continue;
+        };
+        let frame = Arc::new(Frame {
+            id: *next_frame,
+            task: item.clone(),
+            rest: rest.clone(),
+            parent: parent.cloned(),
+        });
+        *next_frame += 1;
+        for_each_binding(
+            view,
+            &method.parameters,
+            &method.precondition,
+            bindings,
+            wanted,
+            &mut |bindings| {
+                // Every variable is bound here, so every subtask grounds.
+                let subtasks = method.subtasks.iter().rev();
+                let tasks = subtasks
+                    .filter_map(|subtask| subtask.ground(bindings))
+                    .fold(rest.clone(), |rest, task| {
+                        rest.prepend(Item::Task(task), Some(frame.clone()))
+                    });
+                found.push(Successor {
+                    delta: delta.clone(),
+                    tasks,
+                    step: None,
+                });
+            },
+        );
+    }
+    found
+}
+
+/// The method's parameters as far as the task's arguments bind them; `None` if the method does
+/// not do this task.
+fn bind_head(method: &Method, task: &Task) -> Option<Bindings> {
+    if method.task.name != task.name {
+        return None;
+    }
+    let mut bindings: Bindings = vec![None; method.parameters.len()];
+    for (term, arg) in method.task.args.iter().zip(&task.args) {
+        match term {
+            Term::Constant(object) if object != arg => return None,
+            Term::Constant(_) => {}
+            Term::Variable(index) => match &bindings[*index] {
+                Some(bound) if bound != arg => return None,
+                _ => bindings[*index] = Some(arg.clone()),
+            },
+        }
+    }
+    Some(bindings)
+}
+
+/// The one successor of an action, if its precondition holds.
+fn act(
+    view: View<'_>,
+    item: &Item,
+    frame: Option<&Arc<Frame>>,
+    rest: &TaskList,
+    wanted: &mut BTreeSet<Fact>,
+) -> Option<Successor> {
+    let action = item.atom();
+    if view.problem.forbidden.contains(item.purpose()) {
+        return None;
+    }
+    let operator = view.problem.domain.operators.get(&action.name)?;
+    let bindings = bind_arguments(&action.args, &operator.parameters);
+    let mut holds = false;
+    for_each_binding(
+        view,
+        &operator.parameters,
+        &operator.precondition,
+        bindings.clone(),
+        wanted,
+        &mut |_| holds = true,
+    );
+    holds.then(|| Successor {
+        delta: view.after(&operator.effect, &bindings),
+        tasks: rest.clone(),
+        step: Some(Step {
+            item: item.clone(),
+            cost: view
+                .number(&operator.cost, &bindings)
+                .map_or(Cost::ZERO, Cost::from_units),
+            frame: frame.cloned(),
+            rest: rest.clone(),
+        }),
+    })
+}

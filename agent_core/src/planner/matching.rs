@@ -1,0 +1,110 @@
+//! All ways to bind the variables of a condition so that it holds.
+
+use std::collections::BTreeSet;
+
+use super::state::{Bindings, View};
+use crate::model::{Fact, Literal, Parameter, Pattern, Term};
+
+/// Calls `found` with every binding of `parameters` that makes `condition` hold, beginning with
+/// `bindings`.
+///
+/// Facts of observable predicates that were asked for and did not hold are added to `wanted`: if
+/// nothing else helps, a plan waits for them.
+pub(super) fn for_each_binding(
+    view: View<'_>,
+    parameters: &[Parameter],
+    condition: &[Literal],
+    bindings: Bindings,
+    wanted: &mut BTreeSet<Fact>,
+    found: &mut dyn FnMut(&Bindings),
+) {
+    let mut query = Query {
+        view,
+        parameters,
+        wanted,
+        found,
+    };
+    let open: Vec<&Literal> = condition.iter().collect();
+    query.solve(&open, bindings);
+}
+
+struct Query<'a, 'b> {
+    view: View<'a>,
+    parameters: &'b [Parameter],
+    wanted: &'b mut BTreeSet<Fact>,
+    found: &'b mut dyn FnMut(&Bindings),
+}
+
+impl Query<'_, '_> {
+    fn solve(&mut self, open: &[&Literal], mut bindings: Bindings) {
+        // First whatever can be decided now, as it costs least and prunes most.
+        let mut undecided = Vec::with_capacity(open.len());
+        for literal in open {
+            match self.decide(literal, &bindings) {
+                Some(true) => {}
+                Some(false) => return,
+                None => undecided.push(*literal),
+            }
+        }
+        // Then bind by a fact that must hold, …
+        let binder = undecided
+            .iter()
+            .position(|literal| matches!(literal, Literal::Fact(true, _)));
+        if let Some(binder) = binder
+            && let Literal::Fact(_, pattern) = undecided.remove(binder)
+        {
+            for fact in self.view.matching(pattern, &bindings) {
+                if let Some(bindings) = self.unify(pattern, &fact, &bindings) {
+                    self.solve(&undecided, bindings);
+                }
+            }
+            return;
+        }
+        // … and what no fact binds, by all objects of its type.
+        let Some(free) = bindings.iter().position(Option::is_none) else {
+            (self.found)(&bindings);
+            return;
+        };
+        for object in self.view.problem.objects_of(&self.parameters[free].kind) {
+            bindings[free] = Some(object);
+            self.solve(&undecided, bindings.clone());
+        }
+    }
+
+    /// Whether a literal holds, if its variables are bound.
+    fn decide(&mut self, literal: &Literal, bindings: &Bindings) -> Option<bool> {
+        match literal {
+            Literal::Equal(wanted, a, b) => {
+                Some((a.bound(bindings)? == b.bound(bindings)?) == *wanted)
+            }
+            Literal::Fact(wanted, pattern) => {
+                let fact = pattern.ground(bindings)?;
+                let holds = self.view.holds(&fact) == *wanted;
+                if !holds && self.view.problem.model.observable.contains(&fact.name) {
+                    self.wanted.insert(fact);
+                }
+                Some(holds)
+            }
+        }
+    }
+
+    /// `bindings` with those that make `pattern` the `fact`, if types allow.
+    fn unify(&self, pattern: &Pattern, fact: &Fact, bindings: &Bindings) -> Option<Bindings> {
+        let mut bindings = bindings.clone();
+        for (term, arg) in pattern.args.iter().zip(&fact.args) {
+            if let Term::Variable(index) = term {
+                match &bindings[*index] {
+                    Some(bound) if bound != arg => return None,
+                    Some(_) => {}
+                    None => {
+                        if !self.view.problem.fits(arg, &self.parameters[*index].kind) {
+                            return None;
+                        }
+                        bindings[*index] = Some(arg.clone());
+                    }
+                }
+            }
+        }
+        Some(bindings)
+    }
+}

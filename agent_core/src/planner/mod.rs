@@ -1,0 +1,95 @@
+//! Planning: forward-chaining decomposition of tasks, best first by cost, alternatives kept.
+
+mod decompose;
+mod estimate;
+mod matching;
+mod naive;
+mod network;
+mod plan;
+mod problem;
+mod revise;
+mod state;
+
+pub use naive::NaivePlanner;
+pub use network::{Frame, Item, TaskList};
+pub use plan::{Agenda, Origin, Plan, Step};
+pub use problem::Problem;
+pub use revise::{
+    advance, broken_protection, effect_of, effect_of_suspension, instance, number_of, project,
+    simulate,
+};
+
+use std::collections::BTreeSet;
+
+use crate::model::Fact;
+
+/// How far a plan is decomposed before it may be followed.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Depth {
+    /// To the last action. Only then can an agent tell whether the rest of a suspended plan still
+    /// holds.
+    #[default]
+    Full,
+    /// Until the first action is known, as in the paper.
+    FirstAction,
+    /// Until so many actions are known.
+    Actions(usize),
+}
+
+impl Depth {
+    /// How many actions have to be known, if not all.
+    fn actions(self) -> Option<usize> {
+        match self {
+            Self::Full => None,
+            Self::FirstAction => Some(1),
+            Self::Actions(actions) => Some(actions.max(1)),
+        }
+    }
+}
+
+/// How to plan.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Settings {
+    /// How far plans are decomposed.
+    pub depth: Depth,
+    /// How many plans are kept, the best included; at least one.
+    pub alternatives: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            depth: Depth::Full,
+            alternatives: 3,
+        }
+    }
+}
+
+/// What came of planning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// Cheapest first; none if it is proved that there is none.
+    pub plans: Vec<Plan>,
+    /// Facts that change without the agent, that were asked for and did not hold.
+    pub wanted: BTreeSet<Fact>,
+    /// Nodes that were expanded.
+    pub expanded: u64,
+}
+
+/// Something that finds plans, in slices, so that planning never blocks listening (decision 9).
+///
+/// Decision 7 has three outcomes: plans, the proof that there is none, and *unknown as yet*, which
+/// is that [`think`](Self::think) returns `None` and wants to be called again.
+pub trait Planner {
+    /// Begins to plan for the cheapest of `agendas`. What was begun before is given up.
+    fn begin(&mut self, problem: Problem, agendas: &[Agenda]);
+
+    /// Goes on for about so many expansions; `None` if it is not done, or has nothing to do.
+    fn think(&mut self, expansions: u64) -> Option<Outcome>;
+
+    /// Whether there is something to go on with.
+    fn is_thinking(&self) -> bool;
+
+    /// Gives up what was begun.
+    fn stop(&mut self);
+}

@@ -1,0 +1,156 @@
+//! The world as it would be after some actions.
+
+use std::collections::BTreeMap;
+
+use super::Problem;
+use crate::model::{Belief, Effect, Fact, Literal, Number, Parameter, Pattern, Symbol};
+
+/// What is different from the belief.
+///
+/// Invariant: no entry says what the belief and the map say anyway, so two ways to the same state
+/// have equal deltas. [`View::set`] keeps it so.
+pub(super) type Delta = BTreeMap<Fact, bool>;
+
+/// A value for every parameter that has one.
+pub(super) type Bindings = Vec<Option<Symbol>>;
+
+/// The belief and the map, overlaid with what actions have changed since.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub problem: &'a Problem,
+    pub delta: &'a Delta,
+}
+
+impl<'a> View<'a> {
+    fn before(&self, fact: &Fact) -> bool {
+        self.problem.belief.holds(fact) || self.problem.map.facts.holds(fact)
+    }
+
+    /// Whether the fact holds.
+    pub fn holds(&self, fact: &Fact) -> bool {
+        self.delta
+            .get(fact)
+            .copied()
+            .unwrap_or_else(|| self.before(fact))
+    }
+
+    /// All facts that match `pattern` as far as its variables are bound, in order.
+    pub fn matching(&self, pattern: &Pattern, bindings: &[Option<Symbol>]) -> Vec<Fact> {
+        let bound: Vec<Option<Symbol>> = pattern
+            .args
+            .iter()
+            .map(|term| term.bound(bindings))
+            .collect();
+        let prefix: Vec<Symbol> = bound.iter().map_while(Clone::clone).collect();
+        let fits = |fact: &Fact| {
+            fact.args.len() == bound.len()
+                && fact
+                    .args
+                    .iter()
+                    .zip(&bound)
+                    .all(|(arg, bound)| bound.as_ref().is_none_or(|bound| bound == arg))
+        };
+        let layer = |belief: &'a Belief| {
+            belief
+                .with_prefix(&pattern.name, &prefix)
+                .filter(|fact| fits(fact) && self.delta.get(*fact) != Some(&false))
+        };
+        let from = Fact {
+            name: pattern.name.clone(),
+            args: prefix.clone(),
+        };
+        let added = self
+            .delta
+            .range(from..)
+            .take_while(|(fact, _)| fact.name == pattern.name && fact.args.starts_with(&prefix))
+            .filter(|(fact, holds)| **holds && fits(fact))
+            .map(|(fact, _)| fact);
+        let mut found: Vec<Fact> = layer(&self.problem.belief)
+            .chain(layer(&self.problem.map.facts))
+            .chain(added)
+            .cloned()
+            .collect();
+        found.sort();
+        found.dedup();
+        found
+    }
+
+    /// The value of an expression; `None` if a function in it has none.
+    pub fn number(&self, number: &Number, bindings: &[Option<Symbol>]) -> Option<f64> {
+        Some(match number {
+            Number::Constant(value) => *value,
+            Number::Function(pattern) => {
+                let function = pattern.ground(bindings)?;
+                let belief = self.problem.belief.value(&function);
+                belief.or_else(|| self.problem.map.facts.value(&function))?
+            }
+            Number::Sum(terms) => {
+                let terms = terms.iter().map(|term| self.number(term, bindings));
+                terms.sum::<Option<f64>>()?
+            }
+            Number::Product(factors) => {
+                let factors = factors.iter().map(|factor| self.number(factor, bindings));
+                factors.product::<Option<f64>>()?
+            }
+            Number::Difference(a, b) => self.number(a, bindings)? - self.number(b, bindings)?,
+            Number::Quotient(a, b) => self.number(a, bindings)? / self.number(b, bindings)?,
+        })
+    }
+
+    /// The state after an effect, as a new delta.
+    pub fn after(&self, effect: &Effect, bindings: &[Option<Symbol>]) -> Delta {
+        let mut delta = self.delta.clone();
+        for pattern in &effect.remove {
+            // A quantified variable is bound to nothing and so matches everything.
+            for fact in self.matching(pattern, bindings) {
+                self.set(&mut delta, fact, false);
+            }
+        }
+        for pattern in &effect.add {
+            if let Some(fact) = pattern.ground(bindings) {
+                self.set(&mut delta, fact, true);
+            }
+        }
+        delta
+    }
+
+    /// Makes a fact hold or not in `delta`.
+    pub fn set(&self, delta: &mut Delta, fact: Fact, holds: bool) {
+        if self.before(&fact) == holds {
+            delta.remove(&fact);
+        } else {
+            delta.insert(fact, holds);
+        }
+    }
+
+    /// Whether a condition with all its variables bound holds; else, in words, the first part that
+    /// does not.
+    pub fn check(&self, condition: &[Literal], bindings: &[Option<Symbol>]) -> Result<(), String> {
+        for literal in condition {
+            match literal {
+                Literal::Fact(wanted, pattern) => {
+                    let Some(fact) = pattern.ground(bindings) else {
+                        continue;
+                    };
+                    if self.holds(&fact) != *wanted {
+                        let not = if *wanted { " does not hold" } else { " holds" };
+                        return Err(format!("{fact}{not}"));
+                    }
+                }
+                Literal::Equal(wanted, a, b) => {
+                    if (a.bound(bindings) == b.bound(bindings)) != *wanted {
+                        return Err(String::from("its arguments do not differ as they must"));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The arguments of an atom as bindings of the parameters of its declaration.
+pub(super) fn bind_arguments(args: &[Symbol], parameters: &[Parameter]) -> Bindings {
+    let mut bindings: Bindings = args.iter().cloned().map(Some).collect();
+    bindings.resize(parameters.len().max(args.len()), None);
+    bindings
+}

@@ -1,0 +1,100 @@
+//! The museum with everything that moves in it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use agent_core::agent::{Agent, Configuration};
+use agent_core::model::Symbol;
+use agent_core::planner::{NaivePlanner, Settings};
+use executor_sim::{Faults, Floor, MoverSpec, Place, SimulatedRobot};
+use maps::{Level, Site};
+
+use crate::{Stack, Wire};
+
+/// The museum, read once, to build stacks from.
+pub struct Museum {
+    /// Its map.
+    pub site: Site,
+    /// Area level.
+    pub area: Level,
+    /// Node level.
+    pub node: Level,
+}
+
+/// Reads the museum.
+pub fn museum() -> Museum {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../maps/museum");
+    Museum {
+        site: Site::read(folder.join("map.geojson")).expect("the museum's map is in order"),
+        area: maps::read_level(&folder, "area").expect("the area level is in order"),
+        node: maps::read_level(&folder, "node").expect("the node level is in order"),
+    }
+}
+
+impl Museum {
+    /// A parent for a robot that stands at `start`.
+    pub fn parent(&self, start: &str) -> Configuration {
+        self.parent_of(start, BTreeMap::new())
+    }
+
+    /// A parent with a child agent for each of some areas.
+    pub fn parent_of(&self, start: &str, wings: BTreeMap<Symbol, Symbol>) -> Configuration {
+        parent_agent::configuration(&self.site, &self.area, start, "child", wings, 1)
+            .expect("the tests start from nodes of the museum")
+    }
+
+    /// A child of that name, for a robot that stands at `start`.
+    pub fn child(&self, start: &str, name: &str, executor: &str) -> Configuration {
+        child_agent::configuration(&self.site, &self.node, start, executor, name, 1)
+            .expect("the tests start from nodes of the museum")
+    }
+
+    /// A robot that stands at `start`.
+    pub fn robot(&self, start: &str, faults: Faults) -> SimulatedRobot {
+        SimulatedRobot::new(
+            &self.node.domain,
+            &self.node.model,
+            Floor::from(&self.site),
+            MoverSpec::default(),
+            Place::at(start),
+            faults,
+        )
+        .expect("the museum is a floor")
+    }
+
+    /// Parent, child and robot, with everything as in the product.
+    pub fn stack(&self, start: &str) -> Stack {
+        self.stack_with(start, Wire::steady(), Faults::none(), |_| {})
+    }
+
+    /// As the paper's tables have it: nothing that runs is kept for an emergency (decision 8 off).
+    pub fn stack_as_in_the_paper(&self, start: &str) -> Stack {
+        self.stack_with(start, Wire::steady(), Faults::none(), |configuration| {
+            configuration.policy.keep_what_helps = false;
+        })
+    }
+
+    /// Parent, child and robot.
+    pub fn stack_with(
+        &self,
+        start: &str,
+        wire: Wire,
+        faults: Faults,
+        change: impl Fn(&mut Configuration),
+    ) -> Stack {
+        let mut stack = Stack::new(wire);
+        let mut parent = self.parent(start);
+        let mut child = self.child(start, "child", "executor");
+        change(&mut parent);
+        change(&mut child);
+        stack.add_agent(agent(parent), &["child"]);
+        stack.add_agent(agent(child), &["executor"]);
+        stack.add_robot("executor", self.robot(start, faults));
+        stack
+    }
+}
+
+/// An agent with the baseline planner.
+pub fn agent(configuration: Configuration) -> Agent<NaivePlanner> {
+    Agent::new(configuration, NaivePlanner::new(Settings::default()))
+}
