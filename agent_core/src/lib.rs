@@ -6,5 +6,6 @@
 //! a thread or draws a random number; what it needs is passed in. That lets one state machine be
 //! tested, simulated, checked exhaustively and run.
 
+pub mod language;
 pub mod model;
 pub mod protocol;

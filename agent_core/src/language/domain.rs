@@ -1,0 +1,382 @@
+//! `(define (domain …) …)`.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::action::{self, action};
+use super::error::{Faults, LanguageError};
+use super::fields::{Fields, fields, read_parameters};
+use super::method::{self, method};
+use super::near::hint;
+use super::tree::{self, Tree};
+use super::typed_list::{kind_of, name, parameters, typed_list};
+use crate::model::{Domain, Number, Operator, Parameter, Symbol};
+
+/// Sections in the order in which they must be read, so that what is used is known by then.
+const SECTIONS: &[&str] = &[
+    ":requirements",
+    ":types",
+    ":constants",
+    ":predicates",
+    ":functions",
+    ":task",
+    ":action",
+    ":method",
+];
+
+/// What authors announce. Whatever of it is used and not read here is refused at its place.
+const REQUIREMENTS: &[&str] = &[
+    ":strips",
+    ":typing",
+    ":hierarchy",
+    ":hierachy", // so in the published benchmark domains
+    ":htn",
+    ":method-preconditions",
+    ":negative-preconditions",
+    ":disjunctive-preconditions",
+    ":existential-preconditions",
+    ":universal-preconditions",
+    ":quantified-preconditions",
+    ":universal-effects",
+    ":conditional-effects",
+    ":equality",
+    ":constraints",
+    ":fluents",
+    ":numeric-fluents",
+    ":action-costs",
+    ":adl",
+    ":partial-order",
+    ":total-order",
+];
+
+/// Reads a domain and checks that everything it uses is declared and fits.
+///
+/// All faults that can be told apart are reported at once, in the order of the text.
+pub fn parse_domain(text: &str) -> Result<Domain, Vec<LanguageError>> {
+    let mut faults = Faults::default();
+    let trees = tree::read(text, &mut faults);
+    if !faults.is_empty() {
+        // Behind a misplaced parenthesis everything else looks wrong as well.
+        return Err(faults.into_errors(text));
+    }
+    let mut reader = Reader {
+        domain: Domain::default(),
+        faults,
+        task_places: BTreeMap::new(),
+    };
+    reader.read(&trees);
+    if reader.faults.is_empty() {
+        Ok(reader.domain)
+    } else {
+        Err(reader.faults.into_errors(text))
+    }
+}
+
+struct Reader {
+    domain: Domain,
+    faults: Faults,
+    /// Where each task is declared.
+    task_places: BTreeMap<Symbol, usize>,
+}
+
+/// An action or a method whose keywords have been read.
+struct Headed<'t> {
+    name: Symbol,
+    at: usize,
+    parameters: Vec<Parameter>,
+    fields: Fields<'t>,
+}
+
+impl Reader {
+    fn read(&mut self, trees: &[Tree]) {
+        let sections = self.sections(trees);
+        let of = |keyword: &'static str| {
+            sections
+                .iter()
+                .filter(move |section| section.head() == Some(keyword))
+                .filter_map(|section| Some((section.at, section.list()?.get(1..)?)))
+        };
+        of(":requirements").for_each(|(_, items)| self.requirements(items));
+        let types: Vec<Tree> = of(":types").flat_map(|(_, items)| items.to_vec()).collect();
+        self.types(&types);
+        of(":constants").for_each(|(_, items)| self.constants(items));
+        of(":predicates").for_each(|(_, items)| self.predicates(items));
+        of(":functions").for_each(|(_, items)| self.functions(items));
+        of(":task").for_each(|(at, items)| self.task(at, items));
+        let actions: Vec<Headed<'_>> = of(":action")
+            .filter_map(|(at, items)| self.action_head(at, items))
+            .collect();
+        // Every head is known before any body, since bodies speak of each other.
+        for head in actions {
+            let operator = action(
+                &head.name,
+                &head.parameters,
+                &head.fields,
+                &self.domain,
+                &mut self.faults,
+            );
+            self.domain.operators.insert(head.name, operator);
+        }
+        of(":method").for_each(|(at, items)| self.method(at, items));
+        self.undone_tasks();
+    }
+
+    /// The sections of the one domain that the text must be.
+    fn sections<'t>(&mut self, trees: &'t [Tree]) -> Vec<&'t Tree> {
+        let Some((define, after)) = trees.split_first() else {
+            self.faults
+                .add(0, "this is empty; a domain is `(define (domain NAME) …)`");
+            return Vec::new();
+        };
+        let wrong = "expected `(define (domain NAME) …)`";
+        let (Some("define"), Some(items)) = (define.head(), define.list()) else {
+            self.faults.add(define.at, wrong);
+            return Vec::new();
+        };
+        match items.get(1) {
+            Some(header) => match (header.head(), header.list()) {
+                (Some("domain"), Some([_, domain])) => {
+                    if let Some(name) = name(domain, "the domain's name", &mut self.faults) {
+                        self.domain.name = name;
+                    }
+                }
+                (Some("problem"), _) => {
+                    self.faults
+                        .add(header.at, "this is a problem; a domain is expected here");
+                    return Vec::new();
+                }
+                _ => self.faults.add(header.at, wrong),
+            },
+            None => self.faults.add(define.at, wrong),
+        }
+        if let Some(first) = after.first() {
+            self.faults.add(
+                first.at,
+                "the domain has ended before this: there is a `)` too many above",
+            );
+        }
+        let sections: Vec<&Tree> = items.iter().skip(2).chain(after).collect();
+        for section in &sections {
+            match section.head() {
+                Some(head) if SECTIONS.contains(&head) => {}
+                Some(head) if head.starts_with(':') => {
+                    let hint = hint(head, SECTIONS.iter().copied(), "; it is not supported yet");
+                    let message = format!("`{head}` is not a section that is read here{hint}");
+                    self.faults.add(section.at, message);
+                }
+                _ => self.faults.add(
+                    section.at,
+                    format!("expected a section such as `(:action …)`, found `{section}`"),
+                ),
+            }
+        }
+        sections
+    }
+
+    fn requirements(&mut self, items: &[Tree]) {
+        for item in items {
+            let word = item.word().unwrap_or_default();
+            if !REQUIREMENTS.contains(&word) {
+                let hint = hint(word, REQUIREMENTS.iter().copied(), "; it is not supported");
+                let message = format!("unknown requirement `{item}`{hint}");
+                self.faults.add(item.at, message);
+            }
+        }
+    }
+
+    fn types(&mut self, items: &[Tree]) {
+        let list = typed_list(items, &mut self.faults);
+        let mut places = BTreeMap::new();
+        for typed in &list {
+            if typed.name.word() == Some("object") && typed.kind.is_none() {
+                continue; // some write out what holds anyway
+            }
+            let Some(kind) = name(typed.name, "a type", &mut self.faults) else {
+                continue;
+            };
+            let above =
+                kind_of(typed, None, &mut self.faults).unwrap_or_else(|| Symbol::from("object"));
+            if self.domain.types.insert(kind.clone(), above).is_some() {
+                let message = format!("type `{kind}` is declared twice");
+                self.faults.add(typed.name.at, message);
+            }
+            places.insert(kind, typed.name.at);
+        }
+        // Only now are all types known that may stand above others.
+        let mut checked = BTreeSet::new();
+        for typed in &list {
+            let place = typed.kind.map(|kind| kind.at);
+            if place.is_some_and(|place| checked.insert(place)) {
+                kind_of(typed, Some(&self.domain), &mut self.faults);
+            }
+        }
+        for (kind, at) in places {
+            let mut above = self.domain.types.get(&kind);
+            let mut steps = 0;
+            while let Some(next) = above.filter(|next| **next != kind) {
+                above = self.domain.types.get(next);
+                steps += 1;
+                if steps > self.domain.types.len() {
+                    break; // a circle further up, which is reported there
+                }
+            }
+            if above == Some(&kind) {
+                let message = format!("type `{kind}` stands above itself");
+                self.faults.add(at, message);
+            }
+        }
+    }
+
+    fn constants(&mut self, items: &[Tree]) {
+        for typed in typed_list(items, &mut self.faults) {
+            let Some(object) = name(typed.name, "a constant", &mut self.faults) else {
+                continue;
+            };
+            let kind = kind_of(&typed, Some(&self.domain), &mut self.faults)
+                .unwrap_or_else(|| Symbol::from("object"));
+            if self.domain.constants.insert(object.clone(), kind).is_some() {
+                let message = format!("constant `{object}` is declared twice");
+                self.faults.add(typed.name.at, message);
+            }
+        }
+    }
+
+    fn predicates(&mut self, items: &[Tree]) {
+        for item in items {
+            let Some((name, parameters)) = self.declaration(item, "a predicate") else {
+                continue;
+            };
+            let twice = self.domain.predicates.insert(name.clone(), parameters);
+            if twice.is_some() {
+                let message = format!("predicate `{name}` is declared twice");
+                self.faults.add(item.at, message);
+            }
+        }
+    }
+
+    fn functions(&mut self, items: &[Tree]) {
+        for typed in typed_list(items, &mut self.faults) {
+            if let Some(kind) = typed.kind.filter(|kind| kind.word() != Some("number")) {
+                self.faults.add(
+                    kind.at,
+                    format!("only functions to `number` are supported, not to `{kind}`"),
+                );
+            }
+            let Some((name, parameters)) = self.declaration(typed.name, "a function") else {
+                continue;
+            };
+            let twice = self.domain.functions.insert(name.clone(), parameters);
+            if twice.is_some() {
+                let message = format!("function `{name}` is declared twice");
+                self.faults.add(typed.name.at, message);
+            }
+        }
+    }
+
+    /// `(at ?n - node)`
+    fn declaration(&mut self, tree: &Tree, what: &str) -> Option<(Symbol, Vec<Parameter>)> {
+        let Some((head, rest)) = tree.list().and_then(|items| items.split_first()) else {
+            self.faults.add(
+                tree.at,
+                format!("expected {what} such as `(name ?x - type)`, found `{tree}`"),
+            );
+            return None;
+        };
+        let name = name(head, what, &mut self.faults)?;
+        let parameters = parameters(rest, Some(&self.domain), &mut self.faults);
+        Some((name, parameters))
+    }
+
+    /// The name, the parameters and the other keywords of a task or an action.
+    fn head<'t>(
+        &mut self,
+        at: usize,
+        items: &'t [Tree],
+        what: &str,
+        words: &[&str],
+    ) -> Option<Headed<'t>> {
+        let Some((head, rest)) = items.split_first() else {
+            self.faults.add(at, format!("{what} needs a name"));
+            return None;
+        };
+        let name = name(head, &format!("the name of {what}"), &mut self.faults)?;
+        let fields = fields(rest, words, what, &mut self.faults);
+        Some(Headed {
+            name,
+            at: head.at,
+            parameters: Vec::new(),
+            fields,
+        })
+    }
+
+    fn task(&mut self, at: usize, items: &[Tree]) {
+        let words = &[":parameters", ":precondition", ":effect"];
+        let Some(head) = self.head(at, items, "a task", words) else {
+            return;
+        };
+        for keyword in &words[1..] {
+            // HDDL's earlier drafts have them, always empty.
+            if let Some((at, tree)) = head.fields.get(keyword)
+                && tree.list().is_none_or(|items| !items.is_empty())
+            {
+                let message = format!("`{keyword}` of a task is not supported; put it in methods");
+                self.faults.add(*at, message);
+            }
+        }
+        let parameters = read_parameters(&head.fields, &self.domain, &mut self.faults);
+        if self
+            .task_places
+            .insert(head.name.clone(), head.at)
+            .is_some()
+        {
+            let message = format!("task `{}` is declared twice", head.name);
+            self.faults.add(head.at, message);
+        }
+        self.domain.tasks.insert(head.name, parameters);
+    }
+
+    fn action_head<'t>(&mut self, at: usize, items: &'t [Tree]) -> Option<Headed<'t>> {
+        let mut head = self.head(at, items, "an action", action::KEYWORDS)?;
+        head.parameters = read_parameters(&head.fields, &self.domain, &mut self.faults);
+        let name = &head.name;
+        if self.task_places.contains_key(name) {
+            let message = format!("`{name}` is both a task and an action; rename one of them");
+            self.faults.add(head.at, message);
+        }
+        let known = Operator {
+            name: name.clone(),
+            parameters: head.parameters.clone(),
+            precondition: Vec::new(),
+            effect: Default::default(),
+            cost: Number::Constant(0.0),
+        };
+        if self.domain.operators.insert(name.clone(), known).is_some() {
+            let message = format!("action `{name}` is declared twice");
+            self.faults.add(head.at, message);
+        }
+        Some(head)
+    }
+
+    fn method(&mut self, at: usize, items: &[Tree]) {
+        let Some(head) = self.head(at, items, "a method", method::KEYWORDS) else {
+            return;
+        };
+        let name = head.name;
+        if self.domain.methods.iter().any(|known| known.name == name) {
+            let message = format!("method `{name}` is declared twice");
+            self.faults.add(head.at, message);
+        }
+        let method = method(name, head.at, &head.fields, &self.domain, &mut self.faults);
+        if let Some((_, tree)) = head.fields.get(":task") {
+            // Even a method that is refused shows that its author thought of the task.
+            self.task_places.remove(tree.head().unwrap_or_default());
+        }
+        self.domain.methods.extend(method);
+    }
+
+    fn undone_tasks(&mut self) {
+        for (task, at) in std::mem::take(&mut self.task_places) {
+            let message = format!("no method does the task `{task}`; write one, or remove it");
+            self.faults.add(at, message);
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! `(:method …)`.
+
+use super::error::Faults;
+use super::expression::{Scope, not_yet};
+use super::fields::{Fields, read_parameters, read_precondition};
+use super::fit::Sort;
+use super::subtasks::subtasks;
+use crate::model::{Domain, Literal, Method, Symbol};
+
+/// What may stand in a method.
+pub(super) const KEYWORDS: &[&str] = &[
+    ":parameters",
+    ":task",
+    ":precondition",
+    ":ordered-subtasks",
+    ":ordered-tasks",
+    ":subtasks",
+    ":tasks",
+    ":ordering",
+    ":order",
+    ":constraints",
+];
+
+/// Reads a method. `at` is where its name stands.
+pub(super) fn method(
+    name: Symbol,
+    at: usize,
+    fields: &Fields<'_>,
+    domain: &Domain,
+    faults: &mut Faults,
+) -> Option<Method> {
+    let parameters = read_parameters(fields, domain, faults);
+    let scope = Scope {
+        parameters: &parameters,
+        domain: Some(domain),
+    };
+    let task = match fields.get(":task") {
+        Some((_, tree)) => scope.pattern(tree, Sort::Task, faults),
+        None => {
+            faults.add(
+                at,
+                format!("the method `{name}` does not say which task it does: add `:task (…)`"),
+            );
+            None
+        }
+    };
+    let mut precondition = read_precondition(fields, &scope, faults);
+    // Constraints that are equalities restrict the variables, just as a precondition does.
+    if let Some((_, tree)) = fields.get(":constraints") {
+        for literal in scope.condition(tree, faults) {
+            match literal {
+                Literal::Equal(..) => precondition.push(literal),
+                Literal::Fact(..) => not_yet(tree, "a constraint that is no equality", faults),
+            }
+        }
+    }
+    let subtasks = subtasks(at, fields, &scope, faults);
+    Some(Method {
+        task: task?,
+        precondition,
+        subtasks,
+        name,
+        parameters,
+    })
+}

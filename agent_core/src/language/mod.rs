@@ -1,0 +1,35 @@
+//! The reader of HDDL, and the checks that a domain must pass before an agent acts on it.
+//!
+//! The language of this first part is total-order HDDL with types, numeric costs and conjunctive
+//! conditions. What goes beyond is refused by name and place rather than misread.
+
+mod action;
+mod check;
+mod domain;
+mod effect;
+mod error;
+mod expression;
+mod fields;
+mod fit;
+mod fragment;
+mod lexer;
+mod method;
+mod near;
+mod subtasks;
+mod tree;
+mod typed_list;
+
+#[cfg(test)]
+mod hostile_text;
+#[cfg(test)]
+mod tests;
+
+pub use check::{DomainError, Truth, check_model};
+pub use domain::parse_domain;
+pub use error::LanguageError;
+pub use fit::{Misfit, Sort};
+pub use fragment::{
+    parse_atom, parse_effects, parse_fact_change, parse_literal, parse_number, parse_parameter,
+    parse_pattern, parse_tasks,
+};
+pub use near::nearest;

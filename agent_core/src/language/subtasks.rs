@@ -1,0 +1,191 @@
+//! What is to be done in place of a task, and in which order.
+
+use std::collections::BTreeSet;
+
+use super::error::Faults;
+use super::expression::Scope;
+use super::fields::Fields;
+use super::fit::Sort;
+use super::near::hint;
+use super::tree::Tree;
+use crate::model::Pattern;
+
+/// A subtask with the name by which `:ordering` may speak of it.
+struct Subtask<'t> {
+    id: Option<&'t Tree>,
+    step: &'t Tree,
+}
+
+/// Reads the subtasks of a method in the order in which they are to be done.
+pub(super) fn subtasks(
+    at: usize,
+    fields: &Fields<'_>,
+    scope: &Scope<'_>,
+    faults: &mut Faults,
+) -> Vec<Pattern> {
+    let get = |keyword: &str| fields.get(keyword).map(|(at, tree)| (*at, *tree));
+    let ordered = get(":ordered-subtasks").or_else(|| get(":ordered-tasks"));
+    let unordered = get(":subtasks").or_else(|| get(":tasks"));
+    let ordering = get(":ordering").or_else(|| get(":order"));
+    let list = match (ordered, unordered, ordering) {
+        (Some(_), Some((at, _)), _) => {
+            faults.add(at, "the subtasks are given twice; keep `:ordered-subtasks`");
+            return Vec::new();
+        }
+        (Some(_), None, Some((at, _))) => {
+            faults.add(
+                at,
+                "`:ordered-subtasks` gives the order already; remove this",
+            );
+            return Vec::new();
+        }
+        (Some((_, tree)), None, None) => items(tree, faults),
+        (None, Some((at, tree)), ordering) => {
+            let list = items(tree, faults);
+            match ordering {
+                Some((at, tree)) => sorted(at, tree, list, faults),
+                None => {
+                    if list.len() > 1 {
+                        partially_ordered(at, faults);
+                    }
+                    list
+                }
+            }
+        }
+        (None, None, _) => {
+            faults.add(
+                at,
+                "the method has no subtasks; write `:ordered-subtasks ()` if nothing is to be done",
+            );
+            return Vec::new();
+        }
+    };
+    list.into_iter()
+        .filter_map(|subtask| scope.pattern(subtask.step, Sort::Step, faults))
+        .collect()
+}
+
+fn partially_ordered(at: usize, faults: &mut Faults) {
+    faults.add(
+        at,
+        "partially ordered subtasks are not supported; write :ordered-subtasks",
+    );
+}
+
+fn items<'t>(tree: &'t Tree, faults: &mut Faults) -> Vec<Subtask<'t>> {
+    match (tree.head(), tree.list()) {
+        (_, Some([])) => Vec::new(),
+        (Some("and"), Some(items)) => items[1..].iter().map(subtask).collect(),
+        (_, Some(_)) => vec![subtask(tree)],
+        (_, None) => {
+            faults.add(
+                tree.at,
+                format!("expected subtasks such as `(and (go ?n) (explain ?n))`, found `{tree}`"),
+            );
+            Vec::new()
+        }
+    }
+}
+
+fn subtask(tree: &Tree) -> Subtask<'_> {
+    match tree.list() {
+        Some([id, step]) if id.word().is_some() && step.list().is_some() => {
+            Subtask { id: Some(id), step }
+        }
+        _ => Subtask {
+            id: None,
+            step: tree,
+        },
+    }
+}
+
+/// Puts subtasks into the order that `:ordering` gives, which must leave no choice.
+fn sorted<'t>(
+    at: usize,
+    ordering: &Tree,
+    subtasks: Vec<Subtask<'t>>,
+    faults: &mut Faults,
+) -> Vec<Subtask<'t>> {
+    let ids: Vec<Option<&str>> = subtasks
+        .iter()
+        .map(|subtask| subtask.id.and_then(Tree::word))
+        .collect();
+    let mut known = BTreeSet::new();
+    for id in subtasks.iter().filter_map(|subtask| subtask.id) {
+        if !known.insert(id.word()) {
+            faults.add(id.at, format!("the subtask `{id}` is named twice"));
+        }
+    }
+    let mut before = BTreeSet::new();
+    let mut unreadable = false;
+    for pair in pairs(ordering) {
+        let Some(pair) = pair_of(pair, &ids, faults) else {
+            unreadable = true;
+            continue;
+        };
+        before.insert(pair);
+    }
+    if unreadable {
+        return subtasks;
+    }
+    // A total order has at each point exactly one subtask that may come next.
+    let mut left: BTreeSet<usize> = (0..subtasks.len()).collect();
+    let mut order = Vec::new();
+    while !left.is_empty() {
+        let waits = |step: usize| left.iter().any(|other| before.contains(&(*other, step)));
+        let next: Vec<usize> = left.iter().copied().filter(|step| !waits(*step)).collect();
+        match next.as_slice() {
+            [] => {
+                faults.add(at, "the ordering goes round in a circle");
+                return subtasks;
+            }
+            [next] => {
+                order.push(*next);
+                left.remove(next);
+            }
+            _ => {
+                partially_ordered(at, faults);
+                return subtasks;
+            }
+        }
+    }
+    let mut subtasks: Vec<Option<Subtask<'t>>> = subtasks.into_iter().map(Some).collect();
+    order
+        .into_iter()
+        .filter_map(|index| subtasks[index].take())
+        .collect()
+}
+
+fn pairs(ordering: &Tree) -> &[Tree] {
+    match (ordering.head(), ordering.list()) {
+        (_, Some([])) => &[],
+        (Some("and"), Some(items)) => &items[1..],
+        _ => std::slice::from_ref(ordering),
+    }
+}
+
+/// `(< t1 t2)`, as indices of the subtasks.
+fn pair_of(tree: &Tree, ids: &[Option<&str>], faults: &mut Faults) -> Option<(usize, usize)> {
+    let Some([sign, first, second]) = tree.list() else {
+        faults.add(tree.at, format!("expected `(< t1 t2)`, found `{tree}`"));
+        return None;
+    };
+    if sign.word() != Some("<") {
+        faults.add(tree.at, format!("expected `(< t1 t2)`, found `{tree}`"));
+        return None;
+    }
+    let mut index = |tree: &Tree| {
+        let found = ids.iter().position(|id| id.is_some() && *id == tree.word());
+        if found.is_none() {
+            let hint = hint(
+                tree.word().unwrap_or_default(),
+                ids.iter().copied().flatten(),
+                "; name it as in `(t1 (go ?n))`",
+            );
+            faults.add(tree.at, format!("no subtask is named `{tree}`{hint}"));
+        }
+        found
+    };
+    let (first, second) = (index(first), index(second));
+    Some((first?, second?))
+}
