@@ -1,1 +1,27 @@
-//! A simulated world and the mover in it, without any input or output, and the program that drives them
+//! A simulated world and the mover in it, without any input or output.
+//!
+//! Three state machines in virtual time: the [`World`] is what is there; the [`Controller`] is
+//! what a superior talks to, and knows the world only by its sensors; a [`SimulatedRobot`] is both
+//! of them coupled, one executor to whoever tests or drives agents. `docs/executor.md` says what a
+//! real robot's driver has to fulfil in the controller's place.
+
+mod controller;
+mod faults;
+mod floor;
+mod place;
+mod profile;
+mod refusal;
+mod setup;
+mod signal;
+mod simulated_robot;
+mod world;
+
+pub use controller::{Controller, Memory, Skill, Vocabulary, VocabularyError};
+pub use faults::{Fault, FaultRates, Faults};
+pub use floor::{Floor, FloorError, Passage};
+pub use place::Place;
+pub use profile::MoverSpec;
+pub use setup::SetupError;
+pub use signal::{MotorCommand, Pose, Sensor, Ticket};
+pub use simulated_robot::SimulatedRobot;
+pub use world::World;

@@ -1,0 +1,216 @@
+//! What superiors say, and what they are answered.
+
+use agent_core::model::{Action, Symbol, Time};
+use agent_core::protocol::{ActionId, Answer, Happening, Instruction, Report};
+
+use super::{Controller, End, Record, Run, Skill};
+use crate::Place;
+use crate::faults::Fault;
+
+impl Controller {
+    pub(super) fn instructed(
+        &mut self,
+        now: Time,
+        from: Symbol,
+        instruction: Instruction,
+    ) -> Answer {
+        match instruction {
+            Instruction::Execute { id, action, .. } => self.execute(now, from, id, action),
+            Instruction::Suspend { id } => self.suspend(now, from, &id),
+            Instruction::Resume { id, .. } => self.resume(now, &id),
+            Instruction::Clear { id } => self.clear(now, &id),
+        }
+    }
+
+    fn execute(&mut self, now: Time, superior: Symbol, id: ActionId, action: Action) -> Answer {
+        if self.is_active(&id) {
+            return Answer::Accepted;
+        }
+        if self.memory.record(&id).is_some() {
+            return rejected(format!("{id} is suspended: resume it or clear it"));
+        }
+        // An identity is used once: this is the same instruction again, and has been followed.
+        match self.over(&id) {
+            Some(Some(outcome)) => return Answer::Finished { outcome },
+            Some(None) => return rejected(format!("{id} was cleared")),
+            None => {}
+        }
+        let skill = match self.fitting(&action) {
+            Ok(skill) => skill,
+            Err(reason) => return rejected(reason),
+        };
+        let (rest, suspendable) = skill;
+        let job = Record {
+            id: id.clone(),
+            superior,
+            action: action.clone(),
+            rest,
+        };
+        let fault = self.faults.next_action();
+        self.set_going(now, job.clone(), suspendable, fault);
+        self.event(now, &job, Happening::ActionStarted { id, action });
+        Answer::Accepted
+    }
+
+    /// What the robot can begin now, and whether that can be suspended; or why it cannot.
+    fn fitting(&self, action: &Action) -> Result<(Skill, bool), String> {
+        let (skill, suspendable) = self.vocabulary.skill(action)?;
+        let place = self.free_to_begin()?;
+        match &skill {
+            Skill::Drive { arc, to } => self.fits(arc, to, place)?,
+            Skill::SetDoor { door, .. } => {
+                if !self.surroundings.floor().doors().contains_key(door) {
+                    return Err(format!("there is no door `{door}`"));
+                }
+            }
+            Skill::Speak { .. } => {}
+        }
+        Ok((skill, suspendable))
+    }
+
+    fn free_to_begin(&self) -> Result<&Place, String> {
+        if let Some(active) = &self.active {
+            return Err(format!("the robot is busy with {}", active.job.action));
+        }
+        self.surroundings
+            .place()
+            .ok_or_else(|| "the robot has not said yet where it stands".to_owned())
+    }
+
+    /// Whether one can drive along `arc` to `to` from that place.
+    fn fits(&self, arc: &Symbol, to: &Symbol, place: &Place) -> Result<(), String> {
+        let floor = self.surroundings.floor();
+        let passage = floor
+            .passage(arc)
+            .ok_or_else(|| format!("there is no arc `{arc}`"))?;
+        if passage.offset_of(to).is_none() {
+            return Err(format!("`{to}` is not an end of `{arc}`"));
+        }
+        if floor.offset_on(arc, place).is_none() {
+            return Err(format!("the robot stands {place}, not on `{arc}`"));
+        }
+        Ok(())
+    }
+
+    fn suspend(&mut self, now: Time, from: Symbol, id: &ActionId) -> Answer {
+        if let Some(active) = self.active.as_mut().filter(|active| active.job.id == *id) {
+            if active.run != Run::Going {
+                return Answer::Suspending;
+            }
+            if !active.suspendable || active.fault == Some(Fault::RefusedSuspension) {
+                return Answer::Refused {
+                    finishes_in: active.expected_end.since(now),
+                };
+            }
+            active.run = Run::Stopping;
+            if let Some(Fault::LateStop { delay }) = active.fault {
+                active.errand_at = Some(now + delay);
+            } else {
+                self.stop_motors();
+            }
+            return Answer::Suspending;
+        }
+        if let Some(record) = self.memory.record(id) {
+            // Who asks again has not heard the report: it has started anew since.
+            let asked_again = Record {
+                superior: from,
+                ..record.clone()
+            };
+            self.report_suspended(&asked_again);
+            return Answer::Suspending;
+        }
+        match self.over(id) {
+            Some(Some(outcome)) => Answer::Finished { outcome },
+            Some(None) => rejected(format!("{id} was cleared")),
+            None => rejected(format!("nothing is known of {id}")),
+        }
+    }
+
+    fn resume(&mut self, now: Time, id: &ActionId) -> Answer {
+        if let Some(active) = self.active.as_ref().filter(|active| active.job.id == *id) {
+            return match active.run {
+                Run::Going => Answer::Accepted,
+                Run::Stopping | Run::Failing => rejected(format!("{id} has not stopped yet")),
+            };
+        }
+        if self.memory.record(id).is_none() {
+            return match self.over(id) {
+                Some(Some(outcome)) => Answer::Finished { outcome },
+                Some(None) => rejected(format!("{id} was cleared")),
+                None => rejected(format!("nothing is known of {id}")),
+            };
+        }
+        let place = match self.free_to_begin() {
+            Ok(place) => place.clone(),
+            Err(reason) => return rejected(reason),
+        };
+        let Some(job) = self.memory.take(id) else {
+            return rejected(format!("nothing is known of {id}"));
+        };
+        if let Skill::Drive { arc, to } = &job.rest
+            && self.fits(arc, to, &place).is_err()
+        {
+            let reason = format!("the record does not fit: the robot stands {place}");
+            let blocked_by = Vec::new();
+            self.end(now, job, End::Failure { reason, blocked_by });
+            return Answer::Accepted;
+        }
+        // It has been suspended, so it can be.
+        self.set_going(now, job.clone(), true, None);
+        let (id, action) = (id.clone(), job.action.clone());
+        self.event(now, &job, Happening::ActionResumed { id, action });
+        Answer::Accepted
+    }
+
+    fn clear(&mut self, now: Time, id: &ActionId) -> Answer {
+        if let Some(active) = self.active.as_ref().filter(|active| active.job.id == *id) {
+            return rejected(match active.run {
+                Run::Going => format!("{id} is running: suspend it first"),
+                Run::Stopping | Run::Failing => format!("{id} has not stopped yet"),
+            });
+        }
+        if let Some(job) = self.memory.take(id) {
+            self.memory.end(id.clone(), job.rest.clone(), End::Cleared);
+            let (id, action) = (id.clone(), job.action.clone());
+            self.event(now, &job, Happening::RecordCleared { id, action });
+            return Answer::Accepted;
+        }
+        match self.over(id) {
+            Some(Some(outcome)) => Answer::Finished { outcome },
+            // Cleared before, or never heard of: there is nothing to drop.
+            Some(None) | None => Answer::Accepted,
+        }
+    }
+
+    /// The outcome of an action that is over; `Some(None)` if it was cleared.
+    fn over(&mut self, id: &ActionId) -> Option<Option<Report>> {
+        let (skill, end) = self.memory.over(id)?;
+        if *end == End::Cleared {
+            return Some(None);
+        }
+        let (skill, end) = (skill.clone(), end.clone());
+        Some(Some(self.outcome(&skill, &end)))
+    }
+
+    pub(super) fn report_suspended(&mut self, record: &Record) {
+        let facts = if self.stands() {
+            self.surroundings.tell(match &record.rest {
+                Skill::Drive { arc, .. } => Some(arc),
+                Skill::Speak { .. } | Skill::SetDoor { .. } => None,
+            })
+        } else {
+            Vec::new()
+        };
+        self.report(record, Report::Suspended { facts });
+    }
+
+    fn is_active(&self, id: &ActionId) -> bool {
+        self.active
+            .as_ref()
+            .is_some_and(|active| active.job.id == *id)
+    }
+}
+
+fn rejected(reason: String) -> Answer {
+    Answer::Rejected { reason }
+}

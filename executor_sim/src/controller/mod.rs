@@ -1,0 +1,313 @@
+//! The robot's executor: one action at a time, and records of those that were suspended.
+
+mod instructions;
+mod memory;
+mod sensors;
+mod skill;
+mod surroundings;
+
+use std::collections::VecDeque;
+
+use agent_core::model::{Domain, ExecutionModel, FactChange, Time};
+use agent_core::protocol::{Event, Happening, Input, Machine, Output, Reply, Report};
+
+use crate::faults::Fault;
+use crate::refusal::refuse;
+use crate::{Faults, Floor, MotorCommand, Sensor, Ticket};
+
+use memory::{End, Record};
+use surroundings::Surroundings;
+
+pub use memory::Memory;
+pub use skill::{Skill, Vocabulary, VocabularyError};
+
+/// What superiors talk to. It knows the world only by its sensors.
+///
+/// Invariant: the motors carry out at most one command of its, that of the active action; it sends
+/// one only to answer an instruction. After a start it first halts everything and accepts nothing
+/// before the sensors have said where the robot stands.
+///
+/// An action belongs to the superior that had it begun: that one gets its reports. Any superior
+/// may suspend it.
+#[derive(Clone, Debug)]
+pub struct Controller {
+    vocabulary: Vocabulary,
+    surroundings: Surroundings,
+    faults: Faults,
+    memory: Memory,
+    active: Option<Active>,
+    last_ticket: u64,
+    outputs: VecDeque<Output<MotorCommand>>,
+}
+
+/// The action that runs.
+#[derive(Clone, Debug)]
+struct Active {
+    /// What would be recorded if it were suspended before it has begun.
+    job: Record,
+    ticket: Ticket,
+    run: Run,
+    suspendable: bool,
+    /// Share of the usual speed.
+    pace: f64,
+    expected_end: Time,
+    fault: Option<Fault>,
+    /// When something is to be done about the fault.
+    errand_at: Option<Time>,
+}
+
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Run {
+    Going,
+    /// A superior has asked for it, and been told yes.
+    Stopping,
+    /// The list of faults has it so.
+    Failing,
+}
+
+impl Controller {
+    /// One that has just started and remembers nothing.
+    pub fn new(
+        domain: &Domain,
+        model: &ExecutionModel,
+        floor: Floor,
+        faults: Faults,
+    ) -> Result<Self, VocabularyError> {
+        Self::remembering(domain, model, floor, faults, Memory::default())
+    }
+
+    /// One that has just started, with what the process before it wrote down. An action that was
+    /// running then has failed: the robot stops, and its superior is told.
+    pub fn remembering(
+        domain: &Domain,
+        model: &ExecutionModel,
+        floor: Floor,
+        faults: Faults,
+        memory: Memory,
+    ) -> Result<Self, VocabularyError> {
+        Ok(Self {
+            vocabulary: Vocabulary::new(domain, model)?,
+            surroundings: Surroundings::new(floor),
+            faults,
+            memory,
+            active: None,
+            last_ticket: 0,
+            outputs: VecDeque::from([Output::Local(MotorCommand::Halt)]),
+        })
+    }
+
+    /// What has to be written down.
+    pub fn memory(&self) -> Memory {
+        let mut memory = self.memory.clone();
+        if let Some(active) = &self.active {
+            memory.running = Some(active.job.clone());
+        }
+        memory
+    }
+
+    /// What is true of the robot's place and of all doors, and that nothing else is: for a
+    /// superior that has just been met. Nothing, as long as the robot drives or has not said yet
+    /// where it stands.
+    pub fn announcement(&mut self) -> Vec<FactChange> {
+        if self.stands() {
+            self.surroundings.announce()
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// Whether the robot's place is what was last heard of it.
+    fn stands(&self) -> bool {
+        let drives = self
+            .active
+            .as_ref()
+            .is_some_and(|active| matches!(active.job.rest, Skill::Drive { .. }));
+        self.surroundings.place().is_some() && !drives
+    }
+
+    /// Has the motors do the job. There is no active action.
+    fn set_going(&mut self, now: Time, job: Record, suspendable: bool, fault: Option<Fault>) {
+        self.last_ticket += 1;
+        let ticket = Ticket(self.last_ticket);
+        let pace = match fault {
+            Some(Fault::Slow { pace }) => pace,
+            _ => 1.0,
+        };
+        // Until the motors say better.
+        let expected_s = match &job.rest {
+            Skill::Drive { arc, .. } => self
+                .surroundings
+                .floor()
+                .passage(arc)
+                .map_or(0.0, |passage| passage.length_m),
+            Skill::Speak { duration_s } | Skill::SetDoor { duration_s, .. } => *duration_s,
+        };
+        let command = match &job.rest {
+            Skill::Drive { arc, to } => MotorCommand::Drive {
+                ticket,
+                arc: arc.clone(),
+                to: to.clone(),
+                pace,
+            },
+            Skill::Speak { duration_s } => MotorCommand::Speak {
+                ticket,
+                duration_s: duration_s / pace,
+            },
+            Skill::SetDoor {
+                door,
+                open,
+                duration_s,
+            } => MotorCommand::SetDoor {
+                ticket,
+                door: door.clone(),
+                open: *open,
+                duration_s: duration_s / pace,
+            },
+        };
+        self.report(&job, Report::Started);
+        self.outputs.push_back(Output::Local(command));
+        self.active = Some(Active {
+            job,
+            ticket,
+            run: Run::Going,
+            suspendable,
+            pace,
+            expected_end: now + Time::from_secs(expected_s / pace),
+            fault,
+            errand_at: None,
+        });
+    }
+
+    /// Has the motors stop what the active action does.
+    fn stop_motors(&mut self) {
+        let Some(active) = &mut self.active else {
+            return;
+        };
+        active.errand_at = None;
+        let ticket = active.ticket;
+        self.outputs.push_back(Output::Local(match active.job.rest {
+            Skill::Drive { .. } => MotorCommand::Brake { ticket },
+            Skill::Speak { .. } => MotorCommand::Hush { ticket },
+            // Only a fault stops it: no superior may.
+            Skill::SetDoor { .. } => MotorCommand::Halt,
+        }));
+    }
+
+    /// Does what the fault has in store, if its time has come.
+    fn run_errand(&mut self, now: Time) {
+        if let Some(active) = &mut self.active
+            && active.errand_at.is_some_and(|time| time <= now)
+        {
+            if active.run == Run::Going {
+                active.run = Run::Failing;
+            }
+            self.stop_motors();
+        }
+    }
+
+    /// An action is over.
+    fn end(&mut self, now: Time, job: Record, end: End) {
+        let report = self.outcome(&job.rest, &end);
+        let failure = match &end {
+            End::Failure { reason, .. } => Some(reason.clone()),
+            End::Success | End::Cleared => None,
+        };
+        self.memory.end(job.id.clone(), job.rest.clone(), end);
+        self.report(&job, report);
+        let (id, action) = (job.id.clone(), job.action.clone());
+        self.event(
+            now,
+            &job,
+            Happening::ActionFinished {
+                id,
+                action,
+                failure,
+            },
+        );
+    }
+
+    /// What a superior is told of an action that is over: its outcome, and what is true now. While
+    /// the robot drives for another, nothing certain can be said of its place.
+    fn outcome(&mut self, skill: &Skill, end: &End) -> Report {
+        let mut facts = Vec::new();
+        if self.stands() {
+            let arc = match skill {
+                Skill::Drive { arc, .. } => Some(arc),
+                Skill::Speak { .. } | Skill::SetDoor { .. } => None,
+            };
+            facts = self.surroundings.tell(arc);
+        }
+        if let Skill::SetDoor { door, .. } = skill {
+            facts.push(self.surroundings.door_fact(door));
+        }
+        match end {
+            End::Failure { reason, blocked_by } => {
+                let doors = blocked_by.iter().filter_map(|fact| fact.args.first());
+                facts.extend(doors.map(|door| self.surroundings.door_fact(door)));
+                Report::Failure {
+                    reason: reason.clone(),
+                    facts,
+                    blocked_by: blocked_by.clone(),
+                }
+            }
+            End::Success | End::Cleared => Report::Success { facts },
+        }
+    }
+
+    /// To the superior whose action it is; and what is in it for all of them to know.
+    fn report(&mut self, job: &Record, report: Report) {
+        let facts = match &report {
+            Report::Success { facts }
+            | Report::Failure { facts, .. }
+            | Report::Suspended { facts } => facts.clone(),
+            Report::Started | Report::Progress { .. } => Vec::new(),
+        };
+        self.outputs.push_back(Output::Report {
+            to: job.superior.clone(),
+            id: job.id.clone(),
+            report,
+        });
+        if !facts.is_empty() {
+            self.outputs.push_back(Output::Observed {
+                facts,
+                reported_to: Some(job.superior.clone()),
+            });
+        }
+    }
+
+    fn event(&mut self, now: Time, job: &Record, what: Happening) {
+        self.outputs.push_back(Output::Event(Event {
+            at: now,
+            goal: Some(job.id.to_string().into()),
+            stack_depth: self.memory.depth(),
+            what,
+        }));
+    }
+}
+
+impl Machine for Controller {
+    type In = Sensor;
+    type Out = MotorCommand;
+
+    fn handle(&mut self, now: Time, input: Input<Sensor>) -> Option<Reply> {
+        self.run_errand(now);
+        match input {
+            Input::Instruction { from, instruction } => {
+                Some(Reply::Instruction(self.instructed(now, from, instruction)))
+            }
+            Input::Local(sensor) => {
+                self.sensed(now, sensor);
+                None
+            }
+            other => refuse(other, "a robot"),
+        }
+    }
+
+    fn poll_output(&mut self) -> Option<Output<MotorCommand>> {
+        self.outputs.pop_front()
+    }
+
+    fn wake_at(&self) -> Option<Time> {
+        self.active.as_ref()?.errand_at
+    }
+}

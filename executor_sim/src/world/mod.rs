@@ -1,0 +1,354 @@
+//! The simulated reality: doors, one robot's body, and its voice.
+
+mod body;
+
+use std::collections::{BTreeMap, VecDeque};
+
+use agent_core::model::{FactChange, Symbol, Time};
+use agent_core::protocol::{Input, Machine, Output, Reply};
+use nalgebra::Isometry2;
+
+use crate::refusal::refuse;
+use crate::{Floor, MotorCommand, MoverSpec, Place, Pose, Sensor, SetupError, Ticket};
+use body::{Body, Ending};
+
+/// What is there whether or not anybody controls it.
+///
+/// A state machine of its own, apart from the [`Controller`](crate::Controller): when a
+/// controller's process dies, the body rolls on and a door that closes is closed all the same.
+/// Nothing ticks; between two events everything is a formula of the time.
+///
+/// [`Input::Observation`] tells it what users and scenarios do: `(open d)` opens a door,
+/// `(not (open d))` closes it. Other facts and unknown doors change nothing.
+#[derive(Clone, Debug)]
+pub struct World {
+    floor: Floor,
+    spec: MoverSpec,
+    doors: BTreeMap<Symbol, bool>,
+    body: Body,
+    speech: Option<Span>,
+    door_work: Option<DoorWork>,
+    /// Somebody has halted everything and waits for standstill.
+    halting: bool,
+    outputs: VecDeque<Sensor>,
+}
+
+#[derive(Clone, Debug)]
+struct Span {
+    ticket: Ticket,
+    begun: Time,
+    end: Time,
+}
+
+#[derive(Clone, Debug)]
+struct DoorWork {
+    span: Span,
+    door: Symbol,
+    open: bool,
+}
+
+/// What is due next. In the order in which simultaneous things happen.
+#[derive(Clone, Copy, Eq, PartialEq, Ord, PartialOrd)]
+enum Due {
+    Motion,
+    Speech,
+    Door,
+}
+
+impl World {
+    /// A robot that stands at that place, facing along the x axis, and doors as the floor has them.
+    pub fn new(floor: Floor, spec: MoverSpec, start: Place) -> Result<Self, SetupError> {
+        if !floor.has(&start) {
+            return Err(SetupError::UnknownPlace(start));
+        }
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        if !(positive(spec.max_speed_m_s)
+            && positive(spec.acceleration_m_s2)
+            && positive(spec.deceleration_m_s2)
+            && positive(spec.turn_rate_rad_s))
+        {
+            return Err(SetupError::Immobile(spec));
+        }
+        Ok(Self {
+            doors: floor.doors().clone(),
+            floor,
+            spec,
+            body: Body::new(start, 0.0),
+            speech: None,
+            door_work: None,
+            halting: false,
+            outputs: VecDeque::new(),
+        })
+    }
+
+    /// Where the body is at that time, if nothing happens before: on the way, this is the arc and
+    /// the offset that it passes.
+    pub fn place(&self, now: Time) -> Place {
+        self.body.seen(&self.floor, now).place
+    }
+
+    /// Position and heading on the floor plan at that time, if nothing happens before.
+    pub fn isometry(&self, now: Time) -> Isometry2<f64> {
+        self.body.seen(&self.floor, now).isometry
+    }
+
+    /// How far the body has driven altogether, in metres.
+    pub fn odometer_m(&self, now: Time) -> f64 {
+        self.body.seen(&self.floor, now).odometer_m
+    }
+
+    /// Whether nothing moves.
+    pub fn stands(&self) -> bool {
+        self.body.stands()
+    }
+
+    /// Every door, and whether it is open.
+    pub fn doors(&self) -> &BTreeMap<Symbol, bool> {
+        &self.doors
+    }
+
+    /// A snapshot for displays; any time up to the next event will do.
+    pub fn pose(&self, now: Time) -> Pose {
+        let seen = self.body.seen(&self.floor, now);
+        let position = seen.isometry.translation.vector;
+        let (node, arc, fraction) = match seen.place {
+            Place::Node { node } => (Some(node), None, None),
+            Place::Arc { arc, offset_m, .. } => {
+                let fraction = self
+                    .floor
+                    .passage(&arc)
+                    .map(|passage| offset_m / passage.length_m);
+                (None, Some(arc), fraction)
+            }
+        };
+        Pose {
+            at: now,
+            position_m: [position.x, position.y],
+            heading_rad: seen.isometry.rotation.angle(),
+            speed_m_s: seen.speed_m_s,
+            arc,
+            fraction,
+            node,
+            speaking: self.speech.is_some(),
+        }
+    }
+
+    fn next_due(&self) -> Option<(Time, Due)> {
+        [
+            self.body.due().map(|time| (time, Due::Motion)),
+            self.speech.as_ref().map(|span| (span.end, Due::Speech)),
+            self.door_work
+                .as_ref()
+                .map(|work| (work.span.end, Due::Door)),
+        ]
+        .into_iter()
+        .flatten()
+        .min()
+    }
+
+    /// Lets everything happen that is due.
+    fn advance(&mut self, now: Time) {
+        while let Some((time, due)) = self.next_due().filter(|(time, _)| *time <= now) {
+            match due {
+                Due::Motion => {
+                    self.outputs.extend(self.body.settle());
+                    self.tell_pose(time);
+                    self.tell_if_halted();
+                }
+                Due::Speech => {
+                    if let Some(Span { ticket, .. }) = self.speech.take() {
+                        self.outputs.push_back(Sensor::SpeechEnded { ticket });
+                    }
+                }
+                Due::Door => {
+                    if let Some(DoorWork { span, door, open }) = self.door_work.take() {
+                        let ticket = span.ticket;
+                        self.move_door(time, &door, open);
+                        self.outputs
+                            .push_back(Sensor::DoorSet { ticket, door, open });
+                    }
+                }
+            }
+        }
+    }
+
+    fn tell_pose(&mut self, now: Time) {
+        let pose = self.pose(now);
+        self.outputs.push_back(Sensor::Pose(pose));
+    }
+
+    fn tell_if_halted(&mut self) {
+        if self.halting && self.body.stands() {
+            self.halting = false;
+            self.outputs.push_back(Sensor::Halted {
+                place: self.body.place().clone(),
+                doors: self.doors.clone(),
+            });
+        }
+    }
+
+    /// Whether that has changed anything.
+    fn move_door(&mut self, now: Time, door: &Symbol, open: bool) -> bool {
+        match self.doors.get_mut(door) {
+            Some(state) if *state != open => *state = open,
+            _ => return false,
+        }
+        if !open && self.body.door_shut(&self.floor, &self.spec, now, door) {
+            self.tell_pose(now);
+        }
+        true
+    }
+
+    fn somebody_moves_door(&mut self, now: Time, change: &FactChange) {
+        let (fact, open) = match change {
+            FactChange::Add(fact) => (fact, true),
+            FactChange::Remove(fact) => (fact, false),
+            FactChange::Set(..) => return,
+        };
+        let [door] = fact.args.as_slice() else {
+            return;
+        };
+        if fact.name == "open" && self.move_door(now, door, open) {
+            self.outputs.push_back(Sensor::DoorChanged {
+                door: door.clone(),
+                open,
+            });
+        }
+    }
+
+    fn command(&mut self, now: Time, command: MotorCommand) {
+        match command {
+            MotorCommand::Drive {
+                ticket,
+                arc,
+                to,
+                pace,
+            } => self.drive(now, (ticket, arc, to, pace)),
+            MotorCommand::Brake { ticket } => {
+                if self.body.is_driving(ticket) {
+                    self.body.brake(&self.spec, now, Ending::Stopped);
+                    self.tell_pose(now);
+                }
+            }
+            MotorCommand::Speak { ticket, duration_s } => {
+                let span = Span::new(ticket, now, duration_s);
+                if self.speech.is_some() {
+                    self.decline(ticket, "the robot is speaking".to_owned());
+                } else {
+                    self.underway(ticket, span.end.since(now));
+                    self.speech = Some(span);
+                    self.tell_pose(now);
+                }
+            }
+            MotorCommand::Hush { ticket } => {
+                if let Some(span) = self.speech.take_if(|span| span.ticket == ticket) {
+                    let spoken_s = now.since(span.begun).secs();
+                    self.outputs.push_back(Sensor::Hushed { ticket, spoken_s });
+                    self.tell_pose(now);
+                }
+            }
+            MotorCommand::SetDoor {
+                ticket,
+                door,
+                open,
+                duration_s,
+            } => {
+                if !self.doors.contains_key(&door) {
+                    self.decline(ticket, format!("there is no door `{door}`"));
+                } else if self.door_work.is_some() {
+                    self.decline(ticket, "the robot is busy with a door".to_owned());
+                } else {
+                    let span = Span::new(ticket, now, duration_s);
+                    self.underway(ticket, span.end.since(now));
+                    self.door_work = Some(DoorWork { span, door, open });
+                }
+            }
+            MotorCommand::Halt => {
+                self.speech = None;
+                self.door_work = None;
+                self.halting = true;
+                self.body.brake(&self.spec, now, Ending::Halted);
+                self.tell_if_halted();
+            }
+            MotorCommand::Look => self.tell_pose(now),
+        }
+    }
+
+    fn drive(&mut self, now: Time, order: (Ticket, Symbol, Symbol, f64)) {
+        let (ticket, arc, to, _) = &order;
+        let ticket = *ticket;
+        let shut = self
+            .body
+            .door_ahead(&self.floor, arc, to)
+            .filter(|door| self.doors.get(door) == Some(&false));
+        if let Some(door) = shut.filter(|_| self.body.stands()) {
+            // A robot that sees a closed door on its way does not set off.
+            self.outputs.push_back(Sensor::Obstructed {
+                ticket,
+                door,
+                place: self.body.place().clone(),
+                driven_m: 0.0,
+            });
+            return;
+        }
+        match self.body.drive(&self.floor, &self.spec, now, order) {
+            Ok(expected) => {
+                self.underway(ticket, expected);
+                self.tell_pose(now);
+            }
+            Err(reason) => self.decline(ticket, reason),
+        }
+    }
+
+    fn underway(&mut self, ticket: Ticket, expected: Time) {
+        self.outputs
+            .push_back(Sensor::Underway { ticket, expected });
+    }
+
+    fn decline(&mut self, ticket: Ticket, reason: String) {
+        self.outputs.push_back(Sensor::Declined { ticket, reason });
+    }
+}
+
+impl Span {
+    fn new(ticket: Ticket, begun: Time, duration_s: f64) -> Self {
+        Self {
+            ticket,
+            begun,
+            end: begun + Time::from_secs(duration_s),
+        }
+    }
+}
+
+impl Machine for World {
+    type In = MotorCommand;
+    type Out = Sensor;
+
+    fn handle(&mut self, now: Time, input: Input<MotorCommand>) -> Option<Reply> {
+        self.advance(now);
+        let reply = match input {
+            Input::Local(command) => {
+                self.command(now, command);
+                None
+            }
+            Input::Observation(changes) => {
+                for change in &changes {
+                    self.somebody_moves_door(now, change);
+                }
+                None
+            }
+            other => refuse(other, "the world"),
+        };
+        // A drive to where the robot stands, a speech without a word: over as soon as begun.
+        self.advance(now);
+        reply
+    }
+
+    fn poll_output(&mut self) -> Option<Output<Sensor>> {
+        self.outputs.pop_front().map(Output::Local)
+    }
+
+    fn wake_at(&self) -> Option<Time> {
+        self.next_due().map(|(time, _)| time)
+    }
+}
