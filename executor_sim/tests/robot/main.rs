@@ -1,0 +1,9 @@
+//! A robot and its world in virtual time, as a superior sees them.
+
+mod doors;
+mod faults;
+mod instructions;
+mod motion;
+mod properties;
+mod rig;
+mod suspension;
