@@ -5,5 +5,6 @@ mod faults;
 mod instructions;
 mod motion;
 mod properties;
+mod reality;
 mod rig;
 mod suspension;
