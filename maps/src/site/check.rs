@@ -15,7 +15,7 @@ const TOLERANCE_M: f64 = 0.01;
 /// Adds everything that is wrong to `faults`.
 pub(super) fn check(drawing: &Drawing, faults: &mut Faults) {
     if drawing.nodes.is_empty() && drawing.unreadable.is_empty() {
-        faults.add(1, "the map has no nodes");
+        faults.add(0, "the map has no nodes");
     }
     ids_are_unique(drawing, faults);
     names_are_unique(drawing, faults);

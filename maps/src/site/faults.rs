@@ -18,7 +18,7 @@ impl Faults {
         }
     }
 
-    /// Something is wrong in this line.
+    /// Something is wrong in this line; in none, if it is 0.
     pub(super) fn add(&mut self, line: usize, message: impl Into<String>) {
         self.found.push((line, message.into()));
     }
@@ -39,7 +39,11 @@ impl Faults {
             .into_iter()
             .map(|(line, message)| Finding {
                 file: self.file.clone(),
-                place: line.to_string(),
+                place: if line == 0 {
+                    String::new()
+                } else {
+                    line.to_string()
+                },
                 message,
             })
             .collect()

@@ -58,7 +58,7 @@ impl Site {
             Ok(text) => Self::from_text(&file, &text),
             Err(error) => {
                 let mut faults = Faults::of(&file);
-                faults.add(1, format!("cannot be read: {error}"));
+                faults.add(0, format!("cannot be read: {error}"));
                 Err(faults.into_findings())
             }
         }

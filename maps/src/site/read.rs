@@ -96,12 +96,12 @@ pub(super) fn read(text: &str, faults: &mut Faults) -> Option<Drawing> {
     };
     let kind = collection.kind.and_then(text_of);
     if kind.as_deref() != Some("FeatureCollection") {
-        faults.add(1, "is not GeoJSON: its type must be \"FeatureCollection\"");
+        faults.add(0, "is not GeoJSON: its type must be \"FeatureCollection\"");
         return None;
     }
     let features: Vec<&RawValue> = match collection.features.map(|raw| raw.get()) {
         None => {
-            faults.add(1, "is not GeoJSON: it has no `features`");
+            faults.add(0, "is not GeoJSON: it has no `features`");
             return None;
         }
         Some(list) => match serde_json::from_str(list) {
