@@ -43,8 +43,7 @@ impl Scope<'_> {
     pub(super) fn term(&self, tree: &Tree, faults: &mut Faults) -> Option<Term> {
         let word = tree.word().unwrap_or_default();
         if !word.starts_with('?') {
-            let object = name(tree, "a variable or an object", faults)?;
-            return Some(Term::Constant(object));
+            return object(tree, faults).map(Term::Constant);
         }
         let among = || {
             self.parameters
@@ -233,14 +232,17 @@ pub(super) fn decimal(word: &str) -> Option<f64> {
     word.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
-/// An object, in a text that has no variables.
+/// An object, in a place where no variable can be. A number is one too: `(speak 30)`.
 pub(super) fn object(tree: &Tree, faults: &mut Faults) -> Option<Symbol> {
-    if tree.word().is_some_and(|word| word.starts_with('?')) {
-        faults.add(
-            tree.at,
-            format!("expected an object, found the variable `{tree}`"),
-        );
-        return None;
+    match tree.word() {
+        Some(word) if decimal(word).is_some() => Some(Symbol::from(word)),
+        Some(word) if word.starts_with('?') => {
+            faults.add(
+                tree.at,
+                format!("expected an object, found the variable `{word}`"),
+            );
+            None
+        }
+        _ => name(tree, "an object", faults),
     }
-    name(tree, "an object", faults)
 }

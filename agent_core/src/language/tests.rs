@@ -360,6 +360,7 @@ fn a_hostile_depth_is_refused() {
 #[test]
 fn goals_and_reports_are_read() {
     assert_eq!(parse_atom(" (AT n1) ").unwrap().to_string(), "(at n1)");
+    assert_eq!(parse_atom("(speak 30)").unwrap().to_string(), "(speak 30)");
     let tasks = parse_tasks("(and (show n2) (show n12))").unwrap();
     assert_eq!(format!("{tasks:?}"), "[(show n2), (show n12)]");
     assert_eq!(parse_tasks("(go n40)").unwrap().len(), 1);
@@ -380,7 +381,7 @@ fn pieces_that_are_no_goal_or_report_are_refused() {
         "(at n1) (at n2)",
         "()",
         "((at) n1)",
-        "(at 3 1)",
+        "(3 at)",
     ] {
         assert!(parse_atom(text).is_err(), "{text}");
     }

@@ -11,22 +11,18 @@ use crate::model::Symbol;
 #[derive(Clone, Debug, Eq, PartialEq, thiserror::Error)]
 pub enum DomainError {
     /// A name, a number of arguments or a type that the domain does not know like this.
-    #[error("`{subject}`: {misfit}")]
+    #[error("{key}: {misfit}")]
     Misfit {
         /// Where it stands.
         key: String,
-        /// The action, task or rule that it belongs to.
-        subject: String,
         /// What does not fit.
         misfit: Misfit,
     },
     /// The side file speaks of a type that the domain does not declare.
-    #[error("`{subject}`: type `{kind}` is not declared in the domain")]
+    #[error("{key}: type `{kind}` is not declared in the domain")]
     UndeclaredType {
         /// Where it stands.
         key: String,
-        /// The task or rule that it belongs to.
-        subject: String,
         /// The type.
         kind: Symbol,
     },

@@ -130,7 +130,6 @@ impl<'a> Place<'a> {
             if !type_is_declared(self.domain, &parameter.kind) {
                 self.errors.push(DomainError::UndeclaredType {
                     key: key.to_owned(),
-                    subject: self.subject.to_string(),
                     kind: parameter.kind.clone(),
                 });
             }
@@ -214,7 +213,6 @@ impl<'a> Place<'a> {
     fn misfit(&mut self, key: &str, misfit: Misfit) {
         self.errors.push(DomainError::Misfit {
             key: key.to_owned(),
-            subject: self.subject.to_string(),
             misfit,
         });
     }

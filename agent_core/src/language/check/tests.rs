@@ -408,10 +408,10 @@ fn every_name_of_an_entry_is_looked_up() {
     let words = |index: usize| errors[index].to_string();
     assert_eq!(
         words(0),
-        "`move`: `lenght` is not a declared function; did you mean `length`?"
+        "action.move.duration_s: `lenght` is not a declared function; did you mean `length`?"
     );
     assert_eq!(
         words(4),
-        "`move`: `move` is not a declared task; it is an action"
+        "task.move: `move` is not a declared task; it is an action"
     );
 }
