@@ -7,7 +7,7 @@ use std::fmt;
 pub struct Finding {
     /// The file, as the user named it.
     pub file: String,
-    /// The line, or the line and the column.
+    /// The line, or the line and the column. Empty if it concerns the file as a whole.
     pub place: String,
     /// What is wrong.
     pub message: String,
@@ -15,6 +15,10 @@ pub struct Finding {
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}: {}", self.file, self.place, self.message)
+        write!(f, "{}:", self.file)?;
+        if !self.place.is_empty() {
+            write!(f, "{}:", self.place)?;
+        }
+        write!(f, " {}", self.message)
     }
 }

@@ -1,9 +1,12 @@
 //! Maps and planning domains: the data, and the code that reads and checks them
 
+mod domain;
+mod execution_model;
 mod finding;
 mod levels;
 mod site;
 
+pub use domain::{Level, check_domain_dir, level_from_texts, read_level};
 pub use finding::Finding;
 pub use levels::{area_level, area_maps, area_start, node_level, node_start, whole_node_level};
 pub use site::{Area, Door, Node, Passage, Route, Site, Summary, check_map};
