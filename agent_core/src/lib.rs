@@ -6,6 +6,8 @@
 //! a thread or draws a random number; what it needs is passed in. That lets one state machine be
 //! tested, simulated, checked exhaustively and run.
 
+pub mod agent;
 pub mod language;
 pub mod model;
+pub mod planner;
 pub mod protocol;

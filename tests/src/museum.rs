@@ -54,7 +54,7 @@ impl Museum {
         SimulatedRobot::new(
             &self.node.domain,
             &self.node.model,
-            Floor::from(&self.site),
+            Floor::try_from(&self.site).expect("the museum is a floor"),
             MoverSpec::default(),
             Place::at(start),
             faults,

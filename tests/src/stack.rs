@@ -114,6 +114,12 @@ impl Stack {
         }
     }
 
+    /// Where the robot really is, in words.
+    pub fn place(&self) -> String {
+        let world = self.robot("executor").world();
+        world.place(self.now).to_string()
+    }
+
     /// The time.
     pub fn now(&self) -> Time {
         self.now
@@ -309,7 +315,11 @@ impl Stack {
                 return;
             }
             seen = self.events.len();
-            assert!(self.step(until), "it did not come to that:\n{}", self.story());
+            assert!(
+                self.step(until),
+                "it did not come to that:\n{}",
+                self.story()
+            );
         }
     }
 

@@ -124,14 +124,19 @@ impl<P: Planner> Agent<P> {
     /// A superior's `Execute`: begins at once, even above a goal that the superior holds suspended
     /// here. Read literally, the paper makes it wait for an empty stack (step 4.3), which only the
     /// superior can empty, later (decision 1).
+    ///
+    /// So it is of the emergencies' kind: it outranks whatever runs when it comes, and an emergency
+    /// of the agent's own that comes later outranks it.
     pub(super) fn begin_instruction(&mut self, from: &Symbol, id: ActionId, task: Task) {
         let number = self.next_goal;
         self.next_goal += 1;
+        let running = self.running.as_ref().map(|running| &running.intention.goal);
+        let emergency = running.filter(|goal| goal.urgency == Urgency::Emergency);
         let goal = Goal {
             id: id.to_string().into(),
             tasks: vec![task],
-            urgency: Urgency::Normal,
-            priority: 0,
+            urgency: Urgency::Emergency,
+            priority: emergency.map_or(i32::MIN, |goal| goal.priority),
             deadline: None,
             number,
             superior: Some((from.clone(), id)),

@@ -30,12 +30,10 @@ impl Goal {
     /// Whether this goal interrupts `other` (decision 4), whether that is running, suspended or
     /// has not begun.
     ///
-    /// An instruction starts at once, whatever is going on (decision 1). Among emergencies the
-    /// higher priority goes first, then the newer one: the paper's stack. A normal goal interrupts
-    /// nothing; its priority only orders the waiting list.
+    /// Among emergencies the higher priority goes first, then the newer one: the paper's stack. A
+    /// normal goal interrupts nothing; its priority only orders the waiting list.
     pub fn outranks(&self, other: &Self) -> bool {
-        self.rank() > other.rank()
-            && (self.superior.is_some() || self.urgency == Urgency::Emergency)
+        self.urgency == Urgency::Emergency && self.rank() > other.rank()
     }
 
     /// Greater goes first.
@@ -46,6 +44,6 @@ impl Goal {
             // The oldest first.
             Urgency::Normal => -i128::from(self.number),
         };
-        (self.superior.is_some(), self.urgency, self.priority, age)
+        (self.urgency, self.priority, age)
     }
 }

@@ -65,28 +65,17 @@ impl<P: Planner> Agent<P> {
             .maps_below
             .get(self.place_of(step)?)?
             .clone();
-        let mut news = Vec::new();
-        for predicate in &self.configuration.model.observable {
+        // What the map says of changing things was true once; what is believed now goes instead.
+        let observable = &self.configuration.model.observable;
+        map.take_changing(observable);
+        for predicate in observable {
             for fact in self.possible_facts(predicate, &map) {
-                news.push(match self.belief.holds(&fact) {
+                map.news.push(match self.belief.holds(&fact) {
                     true => FactChange::Add(fact),
                     false => FactChange::Remove(fact),
                 });
             }
         }
-        // The executor has what changes from the news alone.
-        let observable = &self.configuration.model.observable;
-        let mut facts: crate::model::Belief = map
-            .facts
-            .facts()
-            .filter(|fact| !observable.contains(&fact.name))
-            .cloned()
-            .collect();
-        for (function, value) in map.facts.values() {
-            facts.apply(&FactChange::Set(function.clone(), value));
-        }
-        map.facts = facts;
-        map.news = news;
         Some(map)
     }
 

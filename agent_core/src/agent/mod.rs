@@ -117,26 +117,10 @@ struct Ended {
 impl<P: Planner> Agent<P> {
     /// An agent that has nothing to do.
     pub fn new(mut configuration: Configuration, planner: P) -> Self {
-        let mut belief = Belief::default();
         let mut map = std::mem::take(&mut configuration.map);
-        // What can change is belief, not map.
-        let (changing, fixed): (Vec<_>, Vec<_>) = map
-            .facts
-            .facts()
-            .cloned()
-            .partition(|fact| configuration.model.observable.contains(&fact.name));
-        let mut facts: Belief = fixed.into_iter().collect();
-        for (function, value) in map.facts.values() {
-            facts.apply(&FactChange::Set(function.clone(), value));
-        }
-        map.facts = facts;
-        let changing = changing.into_iter().map(FactChange::Add);
-        for change in changing
-            .chain(map.news.drain(..))
-            .chain(configuration.facts.drain(..))
-        {
-            belief.apply(&change);
-        }
+        let mut belief = Belief::default();
+        belief.apply_all(&map.take_changing(&configuration.model.observable));
+        belief.apply_all(&std::mem::take(&mut configuration.facts));
         let mut agent = Self {
             last_executor: configuration.executors.default.clone(),
             configuration,

@@ -64,7 +64,7 @@ impl<P: Planner> Agent<P> {
         let Some(mut map) = map else {
             return;
         };
-        let news = std::mem::take(&mut map.news);
+        let news = map.take_changing(&self.configuration.model.observable);
         self.map = Arc::new(map);
         self.observed(&news);
     }

@@ -54,5 +54,5 @@ impl WaitingGoals {
 }
 
 fn does_not_wait(goal: &Goal) -> bool {
-    goal.superior.is_some() || goal.urgency == Urgency::Emergency
+    goal.urgency == Urgency::Emergency
 }

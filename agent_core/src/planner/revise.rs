@@ -25,6 +25,9 @@ pub fn simulate(problem: &Problem, steps: &[Step], running: bool) -> Result<Cost
             return Err(format!("{action} is not an action of this domain"));
         };
         let bindings = bind_arguments(&action.args, &operator.parameters);
+        if problem.forbidden.contains(step.purpose()) {
+            return Err(format!("{} has failed too often", step.purpose()));
+        }
         if !(running && index == 0) {
             view.check(&operator.precondition, &bindings)
                 .map_err(|why| format!("{why}, which {action} needs"))?;

@@ -1,0 +1,312 @@
+//! The decisions where the paper is silent, by their numbers in ARCHITECTURE.md.
+
+use agent_core::model::Time;
+use agent_core::protocol::{
+    Answer, Command, GoalRequest, Happening, Input, Instruction, Rejection, Reply, Urgency,
+};
+use intermezzo_tests::{museum, of_superior};
+
+use super::{ON_ARC5, entering, map_of, on_the_way, parent};
+
+#[test]
+fn decision_1_an_instruction_starts_above_a_held_goal() {
+    // Read literally, the emergency's subgoal waits for a stack that only its parent can empty,
+    // and the parent waits for the subgoal.
+    let mut child = entering();
+    child.instruct(Instruction::Suspend { id: of_superior(1) });
+    child.suspended(1, &ON_ARC5);
+    child.told();
+    assert_eq!(child.stacked(), ["superior.1.1"]);
+    let answer = child.execute(2, "(approach n4 area1)", Some(&map_of("area1")));
+    assert_eq!(answer, Answer::Accepted);
+    assert_eq!(child.told(), ["execute #2 (leave arc5 n1)"]);
+    child.success(2, &["(not (on arc5))", "(not (left n1))", "(at n1)"]);
+    child.success(3, &["(not (at n1))", "(at n4)"]);
+    assert_eq!(child.reported(), ["#1 suspended", "#2 success"]);
+    assert_eq!(child.stacked(), ["superior.1.1"], "still held");
+}
+
+#[test]
+fn decision_2_only_plans_that_were_kept_are_rolled_back() {
+    let mut child = entering();
+    child.instruct(Instruction::Suspend { id: of_superior(1) });
+    child.suspended(1, &ON_ARC5);
+    // The way back is the shorter one now: the door in front has closed, another is to be taken.
+    child.instruct(Instruction::Clear { id: of_superior(1) });
+    child.told();
+    child.execute(2, "(enter area1 area2 door1_2)", Some(&map_of("area1")));
+    assert_eq!(
+        child.told(),
+        ["execute #2 (leave arc5 n1)"],
+        "and no (return n1 arc5) before it"
+    );
+}
+
+#[test]
+fn decision_4_the_higher_priority_goes_first_and_the_newest_among_equals() {
+    let mut parent = on_the_way();
+    parent.ask("low", "(go n4)", Urgency::Emergency, 1).unwrap();
+    parent.suspended(1, &["(in area1)"]);
+    assert_eq!(parent.running().as_deref(), Some("low"));
+    // Higher: interrupts.
+    parent
+        .ask("high", "(go n2)", Urgency::Emergency, 2)
+        .unwrap();
+    parent.suspended(2, &["(in area1)"]);
+    assert_eq!(parent.running().as_deref(), Some("high"));
+    // Lower than what runs, and equal to what is suspended but newer: next.
+    parent
+        .ask("newer", "(go n3)", Urgency::Emergency, 1)
+        .unwrap();
+    assert_eq!(parent.running().as_deref(), Some("high"));
+    // Lower than everything: after all emergencies, before the tour.
+    parent
+        .ask("last", "(go n5)", Urgency::Emergency, 0)
+        .unwrap();
+    parent.success(3, &["(at n2)"]);
+    assert_eq!(parent.running().as_deref(), Some("newer"));
+    parent.success(4, &["(at n3)"]);
+    assert_eq!(parent.running().as_deref(), Some("low"));
+    parent.success(2, &["(at n4)"]);
+    assert_eq!(parent.running().as_deref(), Some("last"));
+    parent.success(5, &["(at n5)"]);
+    assert_eq!(parent.running().as_deref(), Some("tour"));
+}
+
+#[test]
+fn decision_5_an_emergency_during_a_suspension_asks_nothing_twice() {
+    let mut parent = on_the_way();
+    parent.emergency("first", "(go n4)");
+    parent.emergency("second", "(go n2)");
+    assert_eq!(parent.told(), ["suspend #1"]);
+    parent.suspended(1, &["(in area1)"]);
+    assert_eq!(parent.running().as_deref(), Some("second"));
+    assert_eq!(parent.stacked(), ["tour"]);
+    parent.success(2, &["(at n2)"]);
+    assert_eq!(parent.running().as_deref(), Some("first"));
+}
+
+#[test]
+fn decision_6_what_runs_above_a_goal_is_suspended_and_released_with_it() {
+    let mut child = entering();
+    // An emergency of the child's own.
+    child.emergency("own", "(reach n4)");
+    child.suspended(1, &ON_ARC5);
+    assert_eq!(child.stacked(), ["superior.1.1"]);
+    child.told();
+    assert_eq!(
+        child.instruct(Instruction::Suspend { id: of_superior(1) }),
+        Answer::Suspending
+    );
+    assert_eq!(child.told(), ["suspend #2"]);
+    child.suspended(2, &["(on arc5)"]);
+    assert_eq!(child.stacked(), ["superior.1.1", "own"]);
+    assert_eq!(child.reported(), ["#1 suspended"]);
+    assert_eq!(child.running(), None, "nothing of it restarts by itself");
+    let map = Some(map_of("area1"));
+    child.instruct(Instruction::Resume {
+        id: of_superior(1),
+        map,
+    });
+    assert_eq!(child.running().as_deref(), Some("own"), "the top first");
+}
+
+#[test]
+fn decision_7_a_goal_without_a_plan_is_blocked_and_goes_on_when_the_fact_changes() {
+    let mut parent = parent();
+    parent.observe(&["(not (open door7_8))"]);
+    parent.goal("tour", "(go n40)");
+    assert!(parent.told().is_empty());
+    assert!(parent.said(
+        "tour",
+        |what| matches!(what, Happening::GoalBlocked { blocked_by }
+        if blocked_by.iter().any(|fact| fact.to_string() == "(open door7_8)"))
+    ));
+    // Others go on meanwhile.
+    parent.goal("desk", "(go n4)");
+    assert_eq!(parent.told(), ["execute #1 (approach n4 area1)"]);
+    parent.success(1, &["(at n4)"]);
+    assert!(parent.told().is_empty());
+    parent.observe(&["(open door7_8)"]);
+    assert_eq!(parent.told(), ["execute #2 (enter area1 area3 door1_3)"]);
+}
+
+#[test]
+fn decision_7_a_deadline_ends_a_blocked_goal() {
+    let mut parent = parent();
+    parent.observe(&["(not (open door7_8))"]);
+    let request = GoalRequest {
+        id: Some("tour".into()),
+        tasks: agent_core::language::parse_tasks("(go n40)").unwrap(),
+        urgency: Urgency::Normal,
+        priority: 0,
+        deadline: Some(Time::from_secs(30.0)),
+    };
+    parent.tell(Input::Goal(request));
+    assert_eq!(
+        agent_core::protocol::Machine::wake_at(&parent.agent),
+        Some(Time::from_secs(30.0))
+    );
+    parent.now = Time::from_secs(30.0);
+    parent.tell(Input::Wake);
+    assert!(parent.said(
+        "tour",
+        |what| matches!(what, Happening::GoalFailed { reason }
+        if reason.contains("deadline"))
+    ));
+}
+
+#[test]
+fn decision_8_an_action_that_serves_the_emergency_goes_on() {
+    let mut parent = parent();
+    parent.goal("tour", "(go n40)");
+    parent.told();
+    parent.emergency("exhibit", "(go n12)");
+    assert!(
+        parent.told().is_empty(),
+        "area3 is on the way: nothing is stopped"
+    );
+    assert_eq!(parent.running().as_deref(), Some("exhibit"));
+    assert_eq!(parent.stacked(), ["tour"]);
+    parent.success(1, &[]);
+    assert_eq!(parent.told(), ["execute #2 (approach n12 area3)"]);
+    parent.success(2, &["(at n12)"]);
+    assert_eq!(parent.told(), ["execute #3 (enter area3 area5 door3_5)"]);
+}
+
+#[test]
+fn decision_8_an_action_that_does_not_serve_the_emergency_is_stopped() {
+    let mut parent = parent();
+    parent.goal("tour", "(go n40)");
+    parent.told();
+    parent.emergency("bench", "(go n13)");
+    assert_eq!(parent.told(), ["suspend #1"]);
+}
+
+#[test]
+fn decision_9_an_emergency_is_acted_on_in_the_midst_of_planning() {
+    let mut configuration = museum().parent("n1");
+    configuration.policy.expansions_per_slice = 1;
+    let mut parent = intermezzo_tests::Bench::new(configuration);
+    let request = |id: &str, tasks: &str, urgency| GoalRequest {
+        id: Some(id.into()),
+        tasks: agent_core::language::parse_tasks(tasks).unwrap(),
+        urgency,
+        priority: 0,
+        deadline: None,
+    };
+    let reply = parent.tell_only(Input::Goal(request("tour", "(go n40)", Urgency::Normal)));
+    assert_eq!(reply, Some(Reply::Goal(Ok("tour".into()))));
+    assert!(parent.told().is_empty(), "one expansion makes no plan");
+    parent.tell(Input::Goal(request("desk", "(go n4)", Urgency::Emergency)));
+    assert_eq!(parent.told(), ["execute #1 (approach n4 area1)"]);
+    assert_eq!(parent.stacked(), ["tour"]);
+}
+
+#[test]
+fn decision_13_an_explanation_is_taken_up_again_where_it_was_broken_off() {
+    let mut parent = parent();
+    parent.goal("show", "(show n2)");
+    parent.success(1, &["(at n2)"]);
+    assert_eq!(
+        parent.told(),
+        ["execute #1 (approach n2 area1)", "execute #2 (explain n2)"]
+    );
+    parent.emergency("bench", "(go n13)");
+    parent.suspended(2, &[]);
+    assert_eq!(
+        parent.told(),
+        ["suspend #2", "execute #3 (enter area1 area2 door1_2)"]
+    );
+    parent.success(3, &["(not (at n2))"]);
+    parent.success(4, &["(at n13)"]);
+    assert_eq!(
+        parent.told(),
+        [
+            "execute #4 (approach n13 area2)",
+            "execute #5 (enter area2 area1 door1_2)"
+        ],
+        "the record of the explanation is not cleared on the way back"
+    );
+    parent.success(5, &["(not (at n13))"]);
+    parent.success(6, &["(at n2)"]);
+    assert_eq!(
+        parent.told(),
+        ["execute #6 (approach n2 area1)", "resume #2"]
+    );
+    parent.success(2, &[]);
+    assert!(parent.said("show", |what| *what == Happening::GoalSucceeded));
+}
+
+#[test]
+fn what_a_user_sets_aside_waits_for_the_user() {
+    let mut parent = on_the_way();
+    assert_eq!(parent.command(Command::Suspend("tour".into())), Ok(()));
+    assert_eq!(parent.told(), ["suspend #1"]);
+    parent.suspended(1, &[]);
+    assert_eq!(parent.running(), None);
+    parent.goal("desk", "(go n4)");
+    assert_eq!(
+        parent.told(),
+        ["execute #2 (approach n4 area1)"],
+        "others go on"
+    );
+    parent.success(2, &["(at n4)"]);
+    assert_eq!(parent.command(Command::Resume("tour".into())), Ok(()));
+    assert_eq!(parent.told(), ["resume #1"]);
+    assert_eq!(
+        parent.command(Command::Resume("nobody".into())),
+        Err(Rejection::UnknownGoal("nobody".into()))
+    );
+}
+
+#[test]
+fn what_a_user_cancels_is_rolled_back_where_the_domain_says_how() {
+    let mut configuration = museum().child("n1", "child", "executor");
+    configuration.map = map_of("area1");
+    let mut child = intermezzo_tests::Bench::new(configuration);
+    child.goal("walk", "(reach n6)");
+    child.told();
+    assert_eq!(child.command(Command::Cancel("walk".into())), Ok(()));
+    child.suspended(1, &ON_ARC5);
+    assert_eq!(
+        child.told(),
+        ["suspend #1", "clear #1", "execute #2 (return n1 arc5)"]
+    );
+    child.success(2, &["(not (on arc5))", "(at n1)"]);
+    assert!(child.said("walk", |what| matches!(
+        what,
+        Happening::ActionRolledBack { .. }
+    )));
+    assert!(child.said("walk", |what| matches!(what, Happening::GoalFailed { .. })));
+    assert_eq!(child.running(), None);
+}
+
+#[test]
+fn a_goal_named_twice_is_one_goal_and_bad_goals_are_refused_with_a_reason() {
+    let mut parent = on_the_way();
+    assert_eq!(
+        parent.ask("tour", "(go n40)", Urgency::Normal, 0),
+        Ok("tour".into())
+    );
+    assert_eq!(parent.agent.waiting().intentions().len(), 0);
+    let mut reason = |id: &str, tasks: &str| {
+        let verdict = parent.ask(id, tasks, Urgency::Emergency, 0);
+        verdict.expect_err("it is refused").to_string()
+    };
+    assert_eq!(
+        reason("tour", "(go n1)"),
+        "there is another goal named `tour` already"
+    );
+    assert_eq!(
+        reason("a", "(go n41)"),
+        "unknown object `n41` in `(go n41)`"
+    );
+    assert_eq!(
+        reason("b", "(go area1)"),
+        "`area1` in `(go area1)` is of type area, but node is wanted"
+    );
+    assert_eq!(reason("c", "(go)"), "`(go)` takes 1 argument(s), not 0");
+    assert!(reason("d", "(fly n1)").starts_with("unknown task `fly`; this agent knows "));
+    assert_eq!(parent.running().as_deref(), Some("tour"));
+}
