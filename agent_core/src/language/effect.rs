@@ -1,5 +1,7 @@
 //! What an action makes true or false, and what it costs.
 
+use std::collections::BTreeSet;
+
 use super::error::Faults;
 use super::expression::{NOT_YET, Scope, not_yet};
 use super::fit::Sort;
@@ -112,6 +114,16 @@ fn quantified(tree: &Tree, scope: &Scope<'_>, faults: &mut Faults) -> Option<Pat
     };
     let pattern = removed(body, &inner, faults)?;
     narrowed(tree, &pattern, &all, scope, faults);
+    // Each place of a fact is matched by itself, so that `?x` twice would be any two objects.
+    let mut seen = BTreeSet::new();
+    for argument in &pattern.args {
+        if let Term::Variable(index) = argument
+            && *index >= scope.parameters.len()
+            && !seen.insert(*index)
+        {
+            not_yet(tree, "forall with one variable in two places", faults);
+        }
+    }
     Some(pattern)
 }
 

@@ -297,6 +297,12 @@ fn what_is_not_supported_yet_is_named_with_its_place() {
 fn a_quantifier_over_some_objects_only_is_refused() {
     let faults = faults_with("(not (at ?a))", "(forall (?x - room) (not (at ?x)))");
     one_fault(&faults, "14:18", &["let `?x` be of type place"]);
+    let twice = "(forall (?x - room) (not (joins ?x ?x ?d)))";
+    one_fault(
+        &faults_with("(not (at ?a))", twice),
+        "14:18",
+        &["one variable in two places"],
+    );
     let all = faults_with("(not (at ?a))", "(forall (?x - place) (not (at ?x)))");
     assert_eq!(all, [""; 0]);
 }
