@@ -7,7 +7,7 @@ use agent_core::language::{
     parse_parameter, parse_pattern,
 };
 use agent_core::model::{
-    ActionModel, Domain, ExecutionModel, Literal, Number, Parameter, Pattern, Projection,
+    ActionModel, CostRule, Domain, ExecutionModel, Literal, Number, Parameter, Pattern, Projection,
     Suspension, Symbol, TaskModel,
 };
 use serde::Deserialize;
@@ -43,6 +43,17 @@ struct ActionEntry {
     suspension: Option<SuspensionEntry>,
     perform: Option<Text>,
     map_of: Option<Text>,
+    #[serde(default)]
+    cost: Vec<CostEntry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CostEntry {
+    #[serde(default)]
+    variables: Vec<Text>,
+    given: Vec<Text>,
+    cost: Spanned<Value>,
 }
 
 #[derive(Deserialize)]
@@ -247,7 +258,12 @@ impl Reader<'_> {
         let suspension = entry.suspension.and_then(|suspension| {
             self.suspension(&sub("suspension"), &suspension, parameters, domain)
         });
+        let costs = entry.cost.iter();
+        let costs = costs
+            .filter_map(|rule| self.cost(&sub("cost"), rule, parameters))
+            .collect();
         ActionModel {
+            costs,
             duration_s,
             timeout_s,
             repeatable: entry.repeatable.unwrap_or(fallback.repeatable),
@@ -261,6 +277,16 @@ impl Reader<'_> {
                 .map_of
                 .and_then(|text| self.parameter_index(&sub("map_of"), &text, parameters)),
         }
+    }
+
+    fn cost(&mut self, key: &str, entry: &CostEntry, parameters: &[Parameter]) -> Option<CostRule> {
+        let sub = |part: &str| format!("{key}.{part}");
+        let parameters = self.variables(&sub("variables"), &entry.variables, parameters);
+        Some(CostRule {
+            given: self.literals(&sub("given"), &entry.given, &parameters),
+            cost: self.number(&sub("cost"), &entry.cost, &parameters)?,
+            parameters,
+        })
     }
 
     fn suspension(

@@ -40,6 +40,9 @@ pub struct ActionModel {
     pub perform: Option<Pattern>,
     /// The parameter that names the place whose map the executor needs.
     pub map_of: Option<usize>,
+    /// What it costs, where that depends on more than its arguments. The first rule that matches
+    /// counts; if none does, the operator's own cost.
+    pub costs: Vec<CostRule>,
 }
 
 impl Default for ActionModel {
@@ -53,8 +56,21 @@ impl Default for ActionModel {
             suspension: None,
             perform: None,
             map_of: None,
+            costs: Vec::new(),
         }
     }
+}
+
+/// What an action costs in some states: a rough plan names areas, but how far it is through an area
+/// depends on where the robot has come in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CostRule {
+    /// The action's parameters, then the variables that `given` binds.
+    pub parameters: Vec<Parameter>,
+    /// Evaluated in the state before the action.
+    pub given: Condition,
+    /// The cost; of several matches the least.
+    pub cost: Number,
 }
 
 /// How an action is suspended, and what may follow (the paper, section 4).

@@ -12,7 +12,9 @@ mod symbol;
 pub use atom::{Action, Atom, Fact, Task};
 pub use belief::{Belief, FactChange};
 pub use domain::{Domain, Method, Operator};
-pub use execution_model::{ActionModel, ExecutionModel, Projection, Suspension, TaskModel};
+pub use execution_model::{
+    ActionModel, CostRule, ExecutionModel, Projection, Suspension, TaskModel,
+};
 pub use expression::{Condition, Effect, Literal, Number, Parameter, Pattern, Term};
 pub use map::Map;
 pub use quantity::{Cost, Time};

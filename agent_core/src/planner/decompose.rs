@@ -5,11 +5,12 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::Problem;
+use super::cost::cost_of;
 use super::matching::for_each_binding;
 use super::network::{Frame, Item, TaskList};
 use super::plan::Step;
 use super::state::{Bindings, Delta, View, bind_arguments};
-use crate::model::{Cost, Fact, Method, Task, Term};
+use crate::model::{Fact, Method, Task, Term};
 
 /// What may come next.
 pub(super) struct Successor {
@@ -121,9 +122,7 @@ fn act(
         tasks: rest.clone(),
         step: Some(Step {
             item: item.clone(),
-            cost: view
-                .number(&operator.cost, &bindings)
-                .map_or(Cost::ZERO, Cost::from_units),
+            cost: cost_of(view, action),
             frame: frame.cloned(),
             rest: rest.clone(),
         }),

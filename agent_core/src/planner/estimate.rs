@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::Problem;
+use super::cost::cost_of;
 use super::matching::for_each_binding;
 use super::network::{Item, TaskList};
 use super::state::{Delta, View, bind_arguments};
@@ -37,9 +38,7 @@ fn estimate_one(view: View<'_>, item: &Item, go_on: bool) -> (Cost, Option<Delta
     let task = item.atom();
     if let Some(operator) = view.problem.domain.operators.get(&task.name) {
         let bindings = bind_arguments(&task.args, &operator.parameters);
-        let cost = view
-            .number(&operator.cost, &bindings)
-            .map_or(Cost::ZERO, Cost::from_units);
+        let cost = cost_of(view, task);
         return (cost, go_on.then(|| view.after(&operator.effect, &bindings)));
     }
     let Some(model) = view.problem.model.tasks.get(&task.name) else {

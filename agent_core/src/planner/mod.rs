@@ -1,5 +1,6 @@
 //! Planning: forward-chaining decomposition of tasks, best first by cost, alternatives kept.
 
+mod cost;
 mod decompose;
 mod estimate;
 mod matching;

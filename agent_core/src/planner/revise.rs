@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::Problem;
+use super::cost::cost_of;
 use super::matching::for_each_binding;
 use super::plan::{Plan, Step};
 use super::state::{Delta, View, bind_arguments};
@@ -32,10 +33,7 @@ pub fn simulate(problem: &Problem, steps: &[Step], running: bool) -> Result<Cost
             view.check(&operator.precondition, &bindings)
                 .map_err(|why| format!("{why}, which {action} needs"))?;
         }
-        total = total
-            + view
-                .number(&operator.cost, &bindings)
-                .map_or(Cost::ZERO, Cost::from_units);
+        total = total + cost_of(view, action);
         delta = view.after(&operator.effect, &bindings);
     }
     Ok(total)

@@ -9,7 +9,8 @@ use crate::site::{Site, metres};
 /// The whole site for the parent agent, in the words of `area.hddl`.
 ///
 /// The middle of an area is its *hub*: the node with the least total distance to the others of
-/// its area. Crossing is from hub to hub, a visit from the hub to a node.
+/// its area. Crossing is from hub to hub, a visit from the hub to a node: the rough costs of a rough
+/// plan. Where the robot has come in, or stands, is known, `leg`, `through` and `inner` are exact.
 pub fn area_level(site: &Site) -> Map {
     let rough = Rough::of(site);
     let mut map = MapWriter::default();
@@ -30,9 +31,18 @@ pub fn area_level(site: &Site) -> Map {
     for (node, length_mm) in &rough.visits {
         map.value("visit", &[node], metres(*length_mm));
     }
+    for ((node, door), length_mm) in &rough.legs {
+        map.value("leg", &[node, door], metres(*length_mm));
+    }
+    for ((area, first, second), length_mm) in &rough.throughs {
+        map.value("through", &[area, first, second], metres(*length_mm));
+    }
+    for ((area, door, node), length_mm) in &rough.inners {
+        map.value("inner", &[area, door, node], metres(*length_mm));
+    }
     for area in site.areas() {
         map.object(area.name(), "area");
-        for (node, length_mm) in rough.least_costs(area.name()) {
+        for (node, length_mm) in rough.least_lengths(area.name()) {
             map.value("distance", &[area.name(), node], metres(length_mm));
         }
     }

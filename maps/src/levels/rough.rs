@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use agent_core::model::Symbol;
-use pathfinding::prelude::dijkstra_all;
 
 use crate::site::Site;
 
@@ -16,6 +15,12 @@ pub(super) struct Rough<'a> {
     pub(super) crossings: BTreeMap<(&'a Symbol, &'a Symbol, &'a Symbol), u64>,
     /// From the hub of its area to a node.
     pub(super) visits: BTreeMap<&'a Symbol, u64>,
+    /// From a node through a door of its area to the other side.
+    pub(super) legs: BTreeMap<(&'a Symbol, &'a Symbol), u64>,
+    /// Through an area: from where the first door leads into it to the other side of the second.
+    pub(super) throughs: BTreeMap<(&'a Symbol, &'a Symbol, &'a Symbol), u64>,
+    /// From where a door leads into an area to a node of it.
+    pub(super) inners: BTreeMap<(&'a Symbol, &'a Symbol, &'a Symbol), u64>,
     site: &'a Site,
 }
 
@@ -57,10 +62,44 @@ impl<'a> Rough<'a> {
                 // Inside an area every node is reached from every other (`Site`).
                 let length =
                     hubs[from].out[exit] + passage.length_mm() + inside[entry][hubs[to].node];
-                crossings
-                    .entry((from, to, door))
-                    .and_modify(|known: &mut u64| *known = length.min(*known))
-                    .or_insert(length);
+                keep_least(&mut crossings, (from, to, door), length);
+            }
+        }
+        // Each door of each area: the node on this side, and what it takes to the other.
+        let mut sides: BTreeMap<&Symbol, Vec<Side<'_>>> = BTreeMap::new();
+        for passage in site.passages() {
+            let Some(door) = passage.door() else { continue };
+            for (exit, _) in passage.directions() {
+                if let Some(area) = site.node(exit.as_str()).map(crate::Node::area) {
+                    sides.entry(area).or_default().push(Side {
+                        door,
+                        node: exit,
+                        length_mm: passage.length_mm(),
+                    });
+                }
+            }
+        }
+        let mut legs = BTreeMap::new();
+        let mut throughs = BTreeMap::new();
+        let mut inners = BTreeMap::new();
+        for (area, sides) in &sides {
+            for node in site
+                .area(area.as_str())
+                .iter()
+                .flat_map(|area| area.nodes())
+            {
+                for side in sides {
+                    let length = inside[node][side.node];
+                    keep_least(&mut legs, (node, side.door), length + side.length_mm);
+                    let length = LEAST_VISIT_MM.max(inside[side.node][node]);
+                    keep_least(&mut inners, (*area, side.door, node), length);
+                }
+            }
+            for first in sides {
+                for second in sides {
+                    let length = inside[first.node][second.node] + second.length_mm;
+                    keep_least(&mut throughs, (*area, first.door, second.door), length);
+                }
             }
         }
         let visits = hubs
@@ -71,37 +110,38 @@ impl<'a> Rough<'a> {
         Self {
             crossings,
             visits,
+            legs,
+            throughs,
+            inners,
             site,
         }
     }
 
-    /// The least sum of crossings from an area to each, all doors open; to itself 0.
-    fn between_areas(&self, from: &'a Symbol) -> BTreeMap<&'a Symbol, u64> {
-        let steps = |area: &&'a Symbol| {
-            let area = *area;
-            self.crossings
-                .iter()
-                .filter(move |((from, _, _), _)| *from == area)
-                .map(|((_, to, _), length)| (*to, *length))
-                .collect::<Vec<_>>()
-        };
-        dijkstra_all(&from, steps)
-            .into_iter()
-            .map(|(area, (_, length))| (area, length))
-            .chain([(from, 0)])
-            .collect()
+    /// The least that it takes from anywhere in an area to each node, all doors open: no plan from
+    /// there costs less.
+    pub(super) fn least_lengths(&self, from: &'a Symbol) -> BTreeMap<&'a Symbol, u64> {
+        let mut least = BTreeMap::new();
+        for start in self.site.nodes().filter(|node| node.area() == from) {
+            for (node, length) in self.site.distances_mm(start, |_| true) {
+                keep_least(&mut least, node, length);
+            }
+        }
+        least
     }
+}
 
-    /// The least that crossings and a visit cost from an area to each node, all doors open. So it
-    /// is never above the cost of a plan made of them, as long as the robot is not there already.
-    pub(super) fn least_costs(&self, from: &'a Symbol) -> Vec<(&'a Symbol, u64)> {
-        let areas = self.between_areas(from);
-        self.site
-            .nodes()
-            .filter_map(|node| {
-                let visit = self.visits.get(node.name())?;
-                Some((node.name(), areas.get(node.area())? + visit))
-            })
-            .collect()
-    }
+/// A door of an area.
+struct Side<'a> {
+    door: &'a Symbol,
+    /// On this side of it.
+    node: &'a Symbol,
+    /// Of the passage through it.
+    length_mm: u64,
+}
+
+fn keep_least<K: Ord>(lengths: &mut BTreeMap<K, u64>, key: K, length: u64) {
+    lengths
+        .entry(key)
+        .and_modify(|known| *known = length.min(*known))
+        .or_insert(length);
 }

@@ -73,6 +73,7 @@ impl<'a> Place<'a> {
         let [duration, timeout, protected] = ["duration_s", "timeout_s", "protected"].map(key);
         let suspension_keys = ["effect", "resume", "rollback", "reach"]
             .map(|rest| key(&format!("suspension.{rest}")));
+        let cost_keys = ["cost.variables", "cost.given", "cost.cost"].map(key);
         if let Some(number) = &action.duration_s {
             self.number(&duration, number);
         }
@@ -80,6 +81,13 @@ impl<'a> Place<'a> {
             self.number(&timeout, number);
         }
         self.condition(&protected, &action.protected);
+        for rule in &action.costs {
+            let mut place = Place::new(self.domain, self.subject, &rule.parameters, self.errors);
+            let [variables, given, cost] = &cost_keys;
+            place.types(variables, &rule.parameters);
+            place.condition(given, &rule.given);
+            place.number(cost, &rule.cost);
+        }
         let Some(suspension) = &action.suspension else {
             return;
         };
