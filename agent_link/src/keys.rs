@@ -1,0 +1,207 @@
+//! Where things are said: `intermezzo/<robot>/…`.
+
+/// A name that cannot be part of a key.
+#[derive(Clone, Debug, Eq, PartialEq, thiserror::Error)]
+pub enum NameError {
+    /// zenoh gives these characters a meaning, or terminals do.
+    #[error(
+        "`{0}` cannot be a name: use letters, digits, `-`, `_` and `.`, at most {MAX_NAME_LENGTH} of them"
+    )]
+    NotAName(String),
+    /// An agent of this name would sit on one of the robot's own keys.
+    #[error("no agent can be named `{0}`: that is a key of the robot itself")]
+    Reserved(String),
+}
+
+/// Names are typed and read by people; longer ones are mistakes.
+const MAX_NAME_LENGTH: usize = 64;
+
+/// The first chunks below the robot that are not agents. `world` and `executor` are agents.
+const RESERVED: [&str; 5] = ["goal", "facts", "event", "clock", "alive"];
+
+/// The keys of one robot.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Keys {
+    robot: String,
+}
+
+/// The keys of one agent of a robot.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct AgentKeys {
+    prefix: String,
+}
+
+impl Keys {
+    /// The keys of the robot of this name.
+    pub fn new(robot: &str) -> Result<Self, NameError> {
+        check_name(robot)?;
+        Ok(Self {
+            robot: robot.to_owned(),
+        })
+    }
+
+    /// The robot's name.
+    pub fn robot(&self) -> &str {
+        &self.robot
+    }
+
+    /// The keys of one of its agents.
+    pub fn agent(&self, name: &str) -> Result<AgentKeys, NameError> {
+        check_name(name)?;
+        if RESERVED.contains(&name) {
+            return Err(NameError::Reserved(name.to_owned()));
+        }
+        Ok(AgentKeys {
+            prefix: self.under(name),
+        })
+    }
+
+    fn under(&self, rest: &str) -> String {
+        format!("intermezzo/{}/{rest}", self.robot)
+    }
+
+    /// Goals that wait for their turn: put or query.
+    pub fn goal_normal(&self) -> String {
+        self.under("goal/normal")
+    }
+
+    /// Goals that interrupt: put or query.
+    pub fn goal_emergency(&self) -> String {
+        self.under("goal/emergency")
+    }
+
+    /// What became of goals that came by plain put: published.
+    pub fn goal_answers(&self) -> String {
+        self.under("goal/answers")
+    }
+
+    /// Suspend, resume or cancel a goal: query.
+    pub fn goal_command(&self) -> String {
+        self.under("goal/command")
+    }
+
+    /// What turned out otherwise in the world: put or query.
+    pub fn facts(&self) -> String {
+        self.under("facts")
+    }
+
+    /// All events of all agents: published.
+    pub fn event(&self) -> String {
+        self.under("event")
+    }
+
+    /// The world's clock: query.
+    pub fn clock(&self) -> String {
+        self.under("clock")
+    }
+
+    /// From the controller to the world it moves in: query.
+    pub fn world_command(&self) -> String {
+        self.under("world/command")
+    }
+
+    /// Where everything is: published, the latest counts.
+    pub fn world_pose(&self) -> String {
+        self.under("world/pose")
+    }
+
+    /// From the world to the controller: query.
+    pub fn executor_sensor(&self) -> String {
+        self.under("executor/sensor")
+    }
+
+    /// The liveliness token of one start of an agent. Without the epoch, a process that takes the
+    /// place of one that hangs would appear unseen.
+    pub fn alive(&self, agent: &str, epoch: u64) -> Result<String, NameError> {
+        self.agent(agent)?;
+        Ok(self.under(&format!("alive/{agent}/{epoch}")))
+    }
+
+    /// The liveliness tokens of all agents.
+    pub fn alive_any(&self) -> String {
+        self.under("alive/*/*")
+    }
+
+    /// Agent and epoch of a liveliness token.
+    pub fn read_alive(key: &str) -> Option<(&str, u64)> {
+        let (rest, epoch) = key.rsplit_once('/')?;
+        let (_, agent) = rest.rsplit_once('/')?;
+        Some((agent, epoch.parse().ok()?))
+    }
+}
+
+impl AgentKeys {
+    fn under(&self, rest: &str) -> String {
+        format!("{}/{rest}", self.prefix)
+    }
+
+    /// From a superior: query.
+    pub fn instruction(&self) -> String {
+        self.under("instruction")
+    }
+
+    /// From an executor of this agent: query.
+    pub fn report(&self) -> String {
+        self.under("report")
+    }
+
+    /// Facts for superiors that did not cause them: published, and query for all that hold.
+    pub fn facts(&self) -> String {
+        self.under("facts")
+    }
+
+    /// One of the views into the agent: query.
+    pub fn view(&self, view: &str) -> String {
+        self.under(view)
+    }
+}
+
+/// What can be a chunk of a key and also be typed and printed without surprise.
+fn check_name(name: &str) -> Result<(), NameError> {
+    let fits = !name.is_empty()
+        && name.len() <= MAX_NAME_LENGTH
+        && name
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c));
+    if fits {
+        Ok(())
+    } else {
+        Err(NameError::NotAName(name.chars().take(80).collect()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_begin_with_the_robot() {
+        let keys = Keys::new("museum-1").unwrap();
+        assert_eq!(keys.goal_normal(), "intermezzo/museum-1/goal/normal");
+        assert_eq!(
+            keys.agent("child").unwrap().instruction(),
+            "intermezzo/museum-1/child/instruction"
+        );
+        let alive = keys.alive("child", 7).unwrap();
+        assert_eq!(alive, "intermezzo/museum-1/alive/child/7");
+        assert_eq!(Keys::read_alive(&alive), Some(("child", 7)));
+    }
+
+    #[test]
+    fn names_that_would_reach_into_other_keys_are_refused() {
+        for name in ["", "a/b", "*", "**", "$*", "a b", "a?", "a#", "ä", "a\n"] {
+            assert_eq!(
+                Keys::new(name),
+                Err(NameError::NotAName(name.to_owned())),
+                "{name:?}"
+            );
+        }
+        let keys = Keys::new("r").unwrap();
+        for name in RESERVED {
+            assert_eq!(keys.agent(name), Err(NameError::Reserved(name.to_owned())));
+        }
+        assert!(keys.agent("executor").is_ok());
+        assert!(keys.agent("world").is_ok());
+        assert!(keys.agent(&"x".repeat(65)).is_err());
+    }
+}

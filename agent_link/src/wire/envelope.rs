@@ -1,0 +1,103 @@
+//! Once and in order: what is around an instruction or a report, and what comes back.
+
+use agent_core::protocol::Envelope;
+use serde::{Deserialize, Serialize};
+
+use super::{Answer, VERSION};
+
+/// An [`Envelope`] as it travels.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Message<T> {
+    v: u32,
+    from: String,
+    epoch: u64,
+    seq: u64,
+    body: T,
+}
+
+impl<T: Clone> From<&Envelope<T>> for Message<T> {
+    fn from(envelope: &Envelope<T>) -> Self {
+        Self {
+            v: VERSION,
+            from: envelope.from.to_string(),
+            epoch: envelope.epoch,
+            seq: envelope.seq,
+            body: envelope.body.clone(),
+        }
+    }
+}
+
+impl<T> From<Message<T>> for Envelope<T> {
+    fn from(message: Message<T>) -> Self {
+        Self {
+            from: message.from.into(),
+            epoch: message.epoch,
+            seq: message.seq,
+            body: message.body,
+        }
+    }
+}
+
+/// What the receiver of a [`Message`] says. Only one that says neither `refused` nor another `seq`
+/// than was asked about means that the message was applied.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Acknowledgement {
+    v: u32,
+    /// The message it is about; `None` if that could not be read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seq: Option<u64>,
+    /// To an instruction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub answer: Option<Answer>,
+    /// Why the message was not applied.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refused: Option<Refusal>,
+}
+
+/// Why a message was not applied.
+#[derive(Clone, Debug, Eq, PartialEq, Serialize, Deserialize)]
+pub struct Refusal {
+    /// In words for a person.
+    pub reason: String,
+    /// The receiver has heard from a later start of the same sender: to repeat is pointless.
+    #[serde(default)]
+    pub superseded: bool,
+}
+
+impl Acknowledgement {
+    /// It was applied; to an instruction with this answer.
+    pub fn applied(seq: u64, answer: Option<Answer>) -> Self {
+        Self {
+            v: VERSION,
+            seq: Some(seq),
+            answer,
+            refused: None,
+        }
+    }
+
+    /// It was not, and may be sent again.
+    pub fn refused(seq: Option<u64>, reason: impl std::fmt::Display) -> Self {
+        Self {
+            v: VERSION,
+            seq,
+            answer: None,
+            refused: Some(Refusal {
+                reason: reason.to_string(),
+                superseded: false,
+            }),
+        }
+    }
+
+    /// It was not and never will be.
+    pub fn superseded(seq: u64) -> Self {
+        Self {
+            v: VERSION,
+            seq: Some(seq),
+            answer: None,
+            refused: Some(Refusal {
+                reason: "a later start of the same sender has been heard from".to_owned(),
+                superseded: true,
+            }),
+        }
+    }
+}

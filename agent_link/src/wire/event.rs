@@ -1,0 +1,315 @@
+//! Events: one flat JSON object a line.
+
+use agent_core::model::{Action, Atom, Cost, FactChange, Symbol, Time};
+use agent_core::protocol::{self, ActionId, Event, Urgency};
+use serde::{Deserialize, Serialize};
+
+use super::text::{changes_to_text, from_text, to_text};
+use super::{Text, VERSION, WireError};
+
+/// An event as it travels.
+#[derive(Debug, Serialize, Deserialize)]
+struct Line {
+    v: u32,
+    t_s: f64,
+    agent: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    goal: Option<String>,
+    stack_depth: usize,
+    #[serde(flatten)]
+    what: What,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+enum What {
+    GoalAccepted {
+        tasks: Vec<Text<Atom>>,
+        urgency: UrgencyWord,
+        priority: i32,
+    },
+    GoalRejected {
+        reason: String,
+    },
+    GoalStarted,
+    GoalSuspended {
+        why: String,
+        action: Option<Text<Action>>,
+    },
+    GoalResumed {
+        how: ResumptionWord,
+        why: String,
+        expanded: u64,
+    },
+    GoalSucceeded,
+    GoalFailed {
+        reason: String,
+    },
+    GoalBlocked {
+        blocked_by: Vec<Text<Atom>>,
+    },
+    PlanSelected {
+        steps: Vec<Text<Action>>,
+        cost: f64,
+        alternatives: Vec<f64>,
+        why: String,
+        expanded: u64,
+    },
+    PlanRevised {
+        why: String,
+        kept: usize,
+    },
+    ActionStarted {
+        action_id: Text<ActionId>,
+        action: Text<Action>,
+    },
+    ActionSuspended {
+        action_id: Text<ActionId>,
+        action: Text<Action>,
+    },
+    ActionResumed {
+        action_id: Text<ActionId>,
+        action: Text<Action>,
+    },
+    ActionRolledBack {
+        action_id: Text<ActionId>,
+        action: Text<Action>,
+    },
+    ActionFinished {
+        action_id: Text<ActionId>,
+        action: Text<Action>,
+        failure: Option<String>,
+    },
+    RecordCleared {
+        action_id: Text<ActionId>,
+        action: Text<Action>,
+    },
+    BeliefChanged {
+        changes: Vec<Text<FactChange>>,
+    },
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum UrgencyWord {
+    Normal,
+    Emergency,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum ResumptionWord {
+    Continued,
+    Alternative,
+    Repaired,
+    Replanned,
+}
+
+/// The line that is published for an event of `agent`, without a line break.
+pub fn event_to_line(agent: &str, event: &Event) -> Result<String, WireError> {
+    super::write(&Line {
+        v: VERSION,
+        t_s: event.at.secs(),
+        agent: agent.to_owned(),
+        goal: event.goal.as_ref().map(ToString::to_string),
+        stack_depth: event.stack_depth,
+        what: to_wire(&event.what),
+    })
+}
+
+/// The agent and the event that a line tells of.
+pub fn event_from_line(line: &[u8]) -> Result<(Symbol, Event), WireError> {
+    let line: Line = super::read("event", line)?;
+    let event = Event {
+        at: Time::from_secs(line.t_s),
+        goal: line.goal.map(Into::into),
+        stack_depth: line.stack_depth,
+        what: from_wire(line.what),
+    };
+    Ok((line.agent.into(), event))
+}
+
+/// Identifier and action of an execution, as they travel.
+fn pair(id: &ActionId, action: &Action) -> (Text<ActionId>, Text<Action>) {
+    (Text(id.clone()), Text(action.clone()))
+}
+
+fn to_wire(what: &protocol::Happening) -> What {
+    use protocol::{Happening as Core, Resumption};
+    match what {
+        Core::GoalAccepted {
+            tasks,
+            urgency,
+            priority,
+        } => What::GoalAccepted {
+            tasks: to_text(tasks),
+            urgency: match urgency {
+                Urgency::Normal => UrgencyWord::Normal,
+                Urgency::Emergency => UrgencyWord::Emergency,
+            },
+            priority: *priority,
+        },
+        Core::GoalRejected { reason } => What::GoalRejected {
+            reason: reason.clone(),
+        },
+        Core::GoalStarted => What::GoalStarted,
+        Core::GoalSuspended { why, action } => What::GoalSuspended {
+            why: why.clone(),
+            action: action.clone().map(Text),
+        },
+        Core::GoalResumed { how, why, expanded } => What::GoalResumed {
+            how: match how {
+                Resumption::Continued => ResumptionWord::Continued,
+                Resumption::Alternative => ResumptionWord::Alternative,
+                Resumption::Repaired => ResumptionWord::Repaired,
+                Resumption::Replanned => ResumptionWord::Replanned,
+            },
+            why: why.clone(),
+            expanded: *expanded,
+        },
+        Core::GoalSucceeded => What::GoalSucceeded,
+        Core::GoalFailed { reason } => What::GoalFailed {
+            reason: reason.clone(),
+        },
+        Core::GoalBlocked { blocked_by } => What::GoalBlocked {
+            blocked_by: to_text(blocked_by),
+        },
+        Core::PlanSelected {
+            steps,
+            cost,
+            alternatives,
+            why,
+            expanded,
+        } => What::PlanSelected {
+            steps: to_text(steps),
+            cost: cost.units(),
+            alternatives: alternatives.iter().map(|cost| cost.units()).collect(),
+            why: why.clone(),
+            expanded: *expanded,
+        },
+        Core::PlanRevised { why, kept } => What::PlanRevised {
+            why: why.clone(),
+            kept: *kept,
+        },
+        Core::ActionStarted { id, action } => {
+            let (action_id, action) = pair(id, action);
+            What::ActionStarted { action_id, action }
+        }
+        Core::ActionSuspended { id, action } => {
+            let (action_id, action) = pair(id, action);
+            What::ActionSuspended { action_id, action }
+        }
+        Core::ActionResumed { id, action } => {
+            let (action_id, action) = pair(id, action);
+            What::ActionResumed { action_id, action }
+        }
+        Core::ActionRolledBack { id, action } => {
+            let (action_id, action) = pair(id, action);
+            What::ActionRolledBack { action_id, action }
+        }
+        Core::ActionFinished {
+            id,
+            action,
+            failure,
+        } => {
+            let (action_id, action) = pair(id, action);
+            What::ActionFinished {
+                action_id,
+                action,
+                failure: failure.clone(),
+            }
+        }
+        Core::RecordCleared { id, action } => {
+            let (action_id, action) = pair(id, action);
+            What::RecordCleared { action_id, action }
+        }
+        Core::BeliefChanged { changes } => What::BeliefChanged {
+            changes: changes_to_text(changes),
+        },
+    }
+}
+
+fn from_wire(what: What) -> protocol::Happening {
+    use protocol::{Happening as Core, Resumption};
+    match what {
+        What::GoalAccepted {
+            tasks,
+            urgency,
+            priority,
+        } => Core::GoalAccepted {
+            tasks: from_text(tasks),
+            urgency: match urgency {
+                UrgencyWord::Normal => Urgency::Normal,
+                UrgencyWord::Emergency => Urgency::Emergency,
+            },
+            priority,
+        },
+        What::GoalRejected { reason } => Core::GoalRejected { reason },
+        What::GoalStarted => Core::GoalStarted,
+        What::GoalSuspended { why, action } => Core::GoalSuspended {
+            why,
+            action: action.map(|Text(action)| action),
+        },
+        What::GoalResumed { how, why, expanded } => Core::GoalResumed {
+            how: match how {
+                ResumptionWord::Continued => Resumption::Continued,
+                ResumptionWord::Alternative => Resumption::Alternative,
+                ResumptionWord::Repaired => Resumption::Repaired,
+                ResumptionWord::Replanned => Resumption::Replanned,
+            },
+            why,
+            expanded,
+        },
+        What::GoalSucceeded => Core::GoalSucceeded,
+        What::GoalFailed { reason } => Core::GoalFailed { reason },
+        What::GoalBlocked { blocked_by } => Core::GoalBlocked {
+            blocked_by: from_text(blocked_by),
+        },
+        What::PlanSelected {
+            steps,
+            cost,
+            alternatives,
+            why,
+            expanded,
+        } => Core::PlanSelected {
+            steps: from_text(steps),
+            cost: Cost::from_units(cost),
+            alternatives: alternatives.into_iter().map(Cost::from_units).collect(),
+            why,
+            expanded,
+        },
+        What::PlanRevised { why, kept } => Core::PlanRevised { why, kept },
+        What::ActionStarted { action_id, action } => Core::ActionStarted {
+            id: action_id.0,
+            action: action.0,
+        },
+        What::ActionSuspended { action_id, action } => Core::ActionSuspended {
+            id: action_id.0,
+            action: action.0,
+        },
+        What::ActionResumed { action_id, action } => Core::ActionResumed {
+            id: action_id.0,
+            action: action.0,
+        },
+        What::ActionRolledBack { action_id, action } => Core::ActionRolledBack {
+            id: action_id.0,
+            action: action.0,
+        },
+        What::ActionFinished {
+            action_id,
+            action,
+            failure,
+        } => Core::ActionFinished {
+            id: action_id.0,
+            action: action.0,
+            failure,
+        },
+        What::RecordCleared { action_id, action } => Core::RecordCleared {
+            id: action_id.0,
+            action: action.0,
+        },
+        What::BeliefChanged { changes } => Core::BeliefChanged {
+            changes: from_text(changes),
+        },
+    }
+}
