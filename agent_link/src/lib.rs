@@ -2,6 +2,11 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod keys;
+mod process;
+pub mod registry;
+pub mod session;
 pub mod wire;
 
 pub use keys::{AgentKeys, Keys, NameError};
+pub use process::{interrupted, runtime};
+pub use session::Session;
