@@ -1,0 +1,205 @@
+//! What users do: ask for goals, look inside, watch.
+
+use std::time::Duration;
+
+use agent_core::model::Symbol;
+use agent_core::protocol::{Command, Event, GoalId, GoalRequest, Urgency};
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use tokio::sync::mpsc;
+use zenoh::Session;
+use zenoh::pubsub::Subscriber;
+use zenoh::query::{ConsolidationMode, QueryTarget};
+
+use crate::clock::epoch_now;
+use crate::inspect::View;
+use crate::keys::{Keys, NameError};
+use crate::wire::{self, CommandVerdict, FactsVerdict, Verdict, WireError};
+
+/// A question is asked again for this long before nobody counts as there: right after a
+/// connection is made, or made again, questions may go nowhere.
+const PATIENCE: Duration = Duration::from_secs(3);
+
+/// One attempt.
+const QUERY_TIMEOUT: Duration = Duration::from_secs(1);
+
+/// Between attempts.
+const RETRY: Duration = Duration::from_millis(100);
+
+/// Events that may wait for a watcher who is slow.
+const EVENTS_WAITING: usize = 16 * 1024;
+
+/// Why a question has no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum ClientError {
+    /// zenoh does not say which.
+    #[error(
+        "no answer from robot `{robot}` on {key}: nothing there is running, or this user is not permitted to ask"
+    )]
+    NoAnswer {
+        /// Whose.
+        robot: String,
+        /// Where it was asked.
+        key: String,
+    },
+    /// The other side speaks otherwise.
+    #[error(transparent)]
+    Wire(#[from] WireError),
+    /// Not a name.
+    #[error(transparent)]
+    Name(#[from] NameError),
+    /// zenoh.
+    #[error("the network does not do what is asked of it: {0}")]
+    Zenoh(zenoh::Error),
+}
+
+/// A user of one robot.
+#[derive(Clone, Debug)]
+pub struct Client {
+    session: Session,
+    keys: Keys,
+}
+
+impl Client {
+    /// Over an open session.
+    pub fn new(session: &Session, keys: &Keys) -> Self {
+        Self {
+            session: session.clone(),
+            keys: keys.clone(),
+        }
+    }
+
+    /// Asks for a goal. One without a name is given one: a lost answer is asked for again, and only
+    /// a name tells the agent that it is the same goal.
+    pub async fn goal(&self, mut goal: GoalRequest) -> Result<Verdict, ClientError> {
+        if goal.id.is_none() {
+            goal.id = Some(new_id(&goal));
+        }
+        let key = match goal.urgency {
+            Urgency::Normal => self.keys.goal_normal(),
+            Urgency::Emergency => self.keys.goal_emergency(),
+        };
+        self.ask("verdict", &key, &wire::goal_to_wire(&goal)?).await
+    }
+
+    /// Suspends, resumes or cancels a goal.
+    pub async fn command(&self, command: &Command) -> Result<CommandVerdict, ClientError> {
+        let text = wire::command_to_wire(command)?;
+        self.ask("verdict", &self.keys.goal_command(), &text).await
+    }
+
+    /// Tells what is different in the world, as people type it: `(not (open door3_5))`.
+    pub async fn facts(&self, text: &str) -> Result<FactsVerdict, ClientError> {
+        self.ask("verdict", &self.keys.facts(), text).await
+    }
+
+    /// Looks inside one agent.
+    pub async fn look(&self, agent: &str, view: View) -> Result<Value, ClientError> {
+        let key = self.keys.agent(agent)?.view(view.name());
+        let mut answer: Value = self.ask("view", &key, "").await?;
+        Ok(answer[view.name()].take())
+    }
+
+    /// The agents that are alive, and the epochs of their starts. One that hangs counts for two
+    /// seconds more.
+    pub async fn alive(&self) -> Result<Vec<(String, u64)>, ClientError> {
+        let tokens = self
+            .session
+            .liveliness()
+            .get(self.keys.alive_any())
+            .timeout(QUERY_TIMEOUT)
+            .await
+            .map_err(ClientError::Zenoh)?;
+        let mut alive = Vec::new();
+        while let Ok(reply) = tokens.recv_async().await {
+            if let Ok(sample) = reply.result()
+                && let Some((agent, epoch)) = Keys::read_alive(sample.key_expr().as_str())
+            {
+                alive.push((agent.to_owned(), epoch));
+            }
+        }
+        alive.sort();
+        Ok(alive)
+    }
+
+    /// All events from now on. Those that a watcher is too slow for are lost to it.
+    pub async fn events(&self) -> Result<Events, ClientError> {
+        let (events, queue) = mpsc::channel(EVENTS_WAITING);
+        let subscriber = self
+            .session
+            .declare_subscriber(self.keys.event())
+            .callback(move |sample| {
+                let line = sample.payload().to_bytes();
+                if events.try_send(wire::event_from_line(&line)).is_err() {
+                    tracing::warn!("an event is lost: more than {EVENTS_WAITING} wait");
+                }
+            })
+            .await
+            .map_err(ClientError::Zenoh)?;
+        Ok(Events {
+            queue,
+            _subscriber: subscriber,
+        })
+    }
+
+    async fn ask<T: DeserializeOwned>(
+        &self,
+        what: &'static str,
+        key: &str,
+        text: &str,
+    ) -> Result<T, ClientError> {
+        let asked = std::time::Instant::now();
+        loop {
+            let replies = self
+                .session
+                .get(key)
+                .payload(text)
+                .target(QueryTarget::All)
+                .consolidation(ConsolidationMode::None)
+                .timeout(QUERY_TIMEOUT)
+                .await
+                .map_err(ClientError::Zenoh)?;
+            if let Ok(reply) = replies.recv_async().await
+                && let Ok(sample) = reply.result()
+            {
+                return Ok(wire::read(what, &sample.payload().to_bytes())?);
+            }
+            if asked.elapsed() >= PATIENCE {
+                return Err(ClientError::NoAnswer {
+                    robot: self.keys.robot().to_owned(),
+                    key: key.to_owned(),
+                });
+            }
+            tokio::time::sleep(RETRY).await;
+        }
+    }
+}
+
+/// Short enough to be typed, and new: the task, and the time in the digits of base 36.
+fn new_id(goal: &GoalRequest) -> GoalId {
+    const DIGITS: &[u8; 36] = b"0123456789abcdefghijklmnopqrstuvwxyz";
+    /// They come round again after 16 hours.
+    const LENGTH: u32 = 5;
+    let task = goal.tasks.first().map_or("goal", |task| task.name.as_str());
+    let mut id: String = task.chars().take(24).chain(['-']).collect();
+    let time_ms = epoch_now();
+    for place in (0..LENGTH).rev() {
+        id.push(char::from(
+            DIGITS[(time_ms / 36_u64.pow(place) % 36) as usize],
+        ));
+    }
+    id.into()
+}
+
+/// A stream of events, in the order in which they came.
+pub struct Events {
+    queue: mpsc::Receiver<Result<(Symbol, Event), WireError>>,
+    _subscriber: Subscriber<()>,
+}
+
+impl Events {
+    /// The next event and the agent that tells it. `None` once there can be no more.
+    pub async fn next(&mut self) -> Option<Result<(Symbol, Event), WireError>> {
+        self.queue.recv().await
+    }
+}

@@ -1,0 +1,273 @@
+//! Everything that can come in, in one queue.
+//!
+//! zenoh calls back on the threads that read from the network. Nothing is done there but to put
+//! what has come into the queue; what finds it full is dropped, and whoever counts on an answer
+//! asks again.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use agent_core::protocol::{Answer, Instruction, Urgency};
+use tokio::runtime::Handle;
+use tokio::sync::mpsc;
+use zenoh::Session;
+use zenoh::bytes::ZBytes;
+use zenoh::liveliness::LivelinessToken;
+use zenoh::pubsub::Subscriber;
+use zenoh::qos::{CongestionControl, Priority};
+use zenoh::query::{ConsolidationMode, Queryable};
+use zenoh::sample::SampleKind;
+
+use crate::inspect::View;
+use crate::keys::Keys;
+use crate::question::Question;
+use crate::wiring::{LinkError, Wiring};
+
+/// What may wait to be seen to. A machine sees to thousands in a second.
+const CAPACITY: usize = 1024;
+
+/// How long handing back what was declared may take at the end.
+const UNDECLARE_TIMEOUT: Duration = Duration::from_secs(2);
+
+/// How often, and how long each time, an executor is asked for all its facts.
+const FACTS_ATTEMPTS: u32 = 10;
+const FACTS_TIMEOUT: Duration = Duration::from_secs(1);
+const FACTS_RETRY: Duration = Duration::from_millis(100);
+
+/// Something came in.
+#[derive(Debug)]
+pub(crate) enum Arrival {
+    /// From a superior.
+    Instruction(Question),
+    /// From an executor.
+    Report(Question),
+    /// From elsewhere.
+    Local(Question),
+    /// From a user.
+    Goal(Urgency, Asked),
+    /// From a user.
+    Command(Question),
+    /// From a user or a sensor.
+    Facts(Asked),
+    /// Somebody wants to look inside.
+    Look(View, Question),
+    /// A superior wants to know all that was told.
+    WhatHolds(Question),
+    /// Told by this executor.
+    Observed(Arc<str>, ZBytes),
+    /// All that was told by this executor.
+    AllObserved(Arc<str>, ZBytes),
+    /// Somebody has appeared (`true`) or vanished, in this epoch.
+    Neighbour(String, u64, bool),
+    /// An executor has answered.
+    Answered(Instruction, Answer),
+    /// The receiver on this key listens to a later start of this machine.
+    Superseded(String),
+}
+
+/// What can be put, or asked for an answer.
+#[derive(Debug)]
+pub(crate) enum Asked {
+    Put(ZBytes),
+    Query(Question),
+}
+
+/// All that is declared for one machine, as long as it lives.
+pub(crate) struct Mailbox {
+    session: Session,
+    runtime: Handle,
+    arrivals: mpsc::Sender<Arrival>,
+    queryables: Vec<Queryable<()>>,
+    subscribers: Vec<Subscriber<()>>,
+    token: Option<LivelinessToken>,
+}
+
+impl Mailbox {
+    /// Declares what the wiring asks for. The liveliness token comes last, so that whoever is seen
+    /// to be alive listens already.
+    pub(crate) async fn open(
+        session: &Session,
+        wiring: &Wiring,
+    ) -> Result<(Self, mpsc::Receiver<Arrival>), LinkError> {
+        let (arrivals, queue) = mpsc::channel(CAPACITY);
+        let mut mailbox = Self {
+            session: session.clone(),
+            runtime: Handle::current(),
+            arrivals,
+            queryables: Vec::new(),
+            subscribers: Vec::new(),
+            token: None,
+        };
+        let keys = &wiring.keys;
+        let own = keys.agent(&wiring.name)?;
+        mailbox
+            .asked(own.instruction(), Arrival::Instruction)
+            .await?;
+        mailbox.asked(own.report(), Arrival::Report).await?;
+        mailbox.asked(own.facts(), Arrival::WhatHolds).await?;
+        for view in View::ALL {
+            let look = move |question| Arrival::Look(view, question);
+            mailbox.asked(own.view(view.name()), look).await?;
+        }
+        if let Some(key) = &wiring.local_in {
+            mailbox.asked(key.clone(), Arrival::Local).await?;
+        }
+        if wiring.takes_goals {
+            for (key, urgency) in [
+                (keys.goal_normal(), Urgency::Normal),
+                (keys.goal_emergency(), Urgency::Emergency),
+            ] {
+                let goal = move |asked| Arrival::Goal(urgency, asked);
+                mailbox
+                    .put(key.clone(), move |put| goal(Asked::Put(put)))
+                    .await?;
+                mailbox
+                    .asked(key, move |query| goal(Asked::Query(query)))
+                    .await?;
+            }
+            mailbox.asked(keys.goal_command(), Arrival::Command).await?;
+        }
+        if wiring.takes_facts {
+            let put = |put| Arrival::Facts(Asked::Put(put));
+            mailbox.put(keys.facts(), put).await?;
+            let query = |query| Arrival::Facts(Asked::Query(query));
+            mailbox.asked(keys.facts(), query).await?;
+        }
+        for executor in &wiring.executors {
+            let name: Arc<str> = Arc::from(executor.as_str());
+            let told = move |put| Arrival::Observed(name.clone(), put);
+            mailbox.put(keys.agent(executor)?.facts(), told).await?;
+        }
+        mailbox.watch_neighbours(wiring).await?;
+        let token = session
+            .liveliness()
+            .declare_token(keys.alive(&wiring.name, wiring.epoch)?);
+        mailbox.token = Some(token.await.map_err(LinkError::Zenoh)?);
+        Ok((mailbox, queue))
+    }
+
+    /// Queries on `key` come in as `arrival`.
+    async fn asked(
+        &mut self,
+        key: String,
+        arrival: impl Fn(Question) -> Arrival + Send + Sync + 'static,
+    ) -> Result<(), LinkError> {
+        let (arrivals, runtime) = (self.arrivals.clone(), self.runtime.clone());
+        let own_key: Arc<str> = Arc::from(key.as_str());
+        let queryable = self
+            .session
+            .declare_queryable(key)
+            .complete(true)
+            .callback(move |query| {
+                let question = Question::new(query, &runtime, own_key.clone());
+                deliver(&arrivals, arrival(question));
+            })
+            .await
+            .map_err(LinkError::Zenoh)?;
+        self.queryables.push(queryable);
+        Ok(())
+    }
+
+    /// Puts on `key` come in as `arrival`.
+    async fn put(
+        &mut self,
+        key: String,
+        arrival: impl Fn(ZBytes) -> Arrival + Send + Sync + 'static,
+    ) -> Result<(), LinkError> {
+        let arrivals = self.arrivals.clone();
+        let subscriber = self
+            .session
+            .declare_subscriber(key)
+            .callback(move |sample| {
+                if sample.kind() == SampleKind::Put {
+                    deliver(&arrivals, arrival(sample.payload().clone()));
+                }
+            })
+            .await
+            .map_err(LinkError::Zenoh)?;
+        self.subscribers.push(subscriber);
+        Ok(())
+    }
+
+    /// Who else of this robot comes and goes, and who is there.
+    async fn watch_neighbours(&mut self, wiring: &Wiring) -> Result<(), LinkError> {
+        let arrivals = self.arrivals.clone();
+        let (own, own_epoch) = (wiring.name.clone(), wiring.epoch);
+        let subscriber = self
+            .session
+            .liveliness()
+            .declare_subscriber(wiring.keys.alive_any())
+            .history(true)
+            .callback(move |sample| {
+                let Some((name, epoch)) = Keys::read_alive(sample.key_expr().as_str()) else {
+                    return;
+                };
+                if (name, epoch) != (own.as_str(), own_epoch) {
+                    let appeared = sample.kind() == SampleKind::Put;
+                    let neighbour = Arrival::Neighbour(name.to_owned(), epoch, appeared);
+                    deliver(&arrivals, neighbour);
+                }
+            })
+            .await
+            .map_err(LinkError::Zenoh)?;
+        self.subscribers.push(subscriber);
+        Ok(())
+    }
+
+    /// Where arrivals go.
+    pub(crate) fn arrivals(&self) -> mpsc::Sender<Arrival> {
+        self.arrivals.clone()
+    }
+
+    /// Asks an executor for all it has told so far; the answer arrives by itself.
+    pub(crate) fn ask_what_holds(&self, executor: Arc<str>, key: String) {
+        let (session, arrivals) = (self.session.clone(), self.arrivals.clone());
+        self.runtime.spawn(async move {
+            for _ in 0..FACTS_ATTEMPTS {
+                let (arrivals, executor) = (arrivals.clone(), executor.clone());
+                let (answered, mut answer) = mpsc::unbounded_channel();
+                // Into the queue right where it is read from the network, and with the priority of
+                // reports: a later report must not be overtaken by what it has outdated.
+                let asked = session
+                    .get(&key)
+                    .priority(Priority::RealTime)
+                    .congestion_control(CongestionControl::Block)
+                    .consolidation(ConsolidationMode::None)
+                    .timeout(FACTS_TIMEOUT)
+                    .callback(move |reply| {
+                        if let Ok(sample) = reply.into_result() {
+                            let payload = sample.payload().clone();
+                            deliver(&arrivals, Arrival::AllObserved(executor.clone(), payload));
+                            let _ = answered.send(());
+                        }
+                    })
+                    .await;
+                if asked.is_ok() && answer.recv().await.is_some() {
+                    return;
+                }
+                tokio::time::sleep(FACTS_RETRY).await;
+            }
+            tracing::warn!("no answer on {key}: what holds there is not known");
+        });
+    }
+
+    /// Hands back all that was declared, but waits no longer than is decent.
+    pub(crate) async fn close(self) {
+        let (done, wait) = tokio::sync::oneshot::channel();
+        // Its own thread: a runtime waits for its own without end.
+        std::thread::spawn(move || {
+            drop(self);
+            let _ = done.send(());
+        });
+        if tokio::time::timeout(UNDECLARE_TIMEOUT, wait).await.is_err() {
+            tracing::warn!("the network did not let go within {UNDECLARE_TIMEOUT:?}");
+        }
+    }
+}
+
+fn deliver(arrivals: &mpsc::Sender<Arrival>, arrival: Arrival) {
+    // A closed queue is that of a machine that has ended.
+    if let Err(mpsc::error::TrySendError::Full(arrival)) = arrivals.try_send(arrival) {
+        tracing::warn!("more than {CAPACITY} messages wait; one is dropped: {arrival:?}");
+    }
+}

@@ -1,0 +1,77 @@
+//! A query that somebody waits for.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use tokio::runtime::Handle;
+use zenoh::bytes::ZBytes;
+use zenoh::query::Query;
+
+use crate::wire::WireError;
+
+/// A query, and the key under which it is answered.
+///
+/// Answering is done elsewhere and never waits: sending may take as long as a slow network likes.
+#[derive(Debug)]
+pub struct Question {
+    query: Query,
+    /// Ours, not the query's: that one may have wildcards.
+    key: Arc<str>,
+    runtime: Handle,
+}
+
+impl Question {
+    pub(crate) fn new(query: Query, runtime: &Handle, key: Arc<str>) -> Self {
+        Self {
+            query,
+            key,
+            runtime: runtime.clone(),
+        }
+    }
+
+    /// What came with it, unless that is too much.
+    pub fn content(
+        &self,
+        what: &'static str,
+        limit_bytes: usize,
+    ) -> Result<Cow<'_, [u8]>, WireError> {
+        match self.query.payload() {
+            Some(payload) => bounded(payload, limit_bytes),
+            None => Err(WireError::malformed(what, "the query has no content")),
+        }
+    }
+
+    /// Sends the answer, soon. One that cannot be written is our mistake and leaves the question
+    /// open, which whoever asked takes for a lost answer.
+    pub fn answer(self, text: Result<String, WireError>) {
+        let text = match text {
+            Ok(text) => text,
+            Err(error) => {
+                tracing::error!("cannot write the answer on {}: {error}", self.key);
+                return;
+            }
+        };
+        let Self {
+            query,
+            key,
+            runtime,
+        } = self;
+        runtime.spawn(async move {
+            if let Err(error) = query.reply(&*key, text).await {
+                tracing::warn!("cannot answer on {key}: {error}");
+            }
+            // Dropping the query tells whoever asked that this was all.
+        });
+    }
+}
+
+/// The bytes, which may be copied for it, unless there are too many.
+pub(crate) fn bounded(payload: &ZBytes, limit_bytes: usize) -> Result<Cow<'_, [u8]>, WireError> {
+    if payload.len() > limit_bytes {
+        return Err(WireError::TooLarge {
+            bytes: payload.len(),
+            limit_bytes,
+        });
+    }
+    Ok(payload.to_bytes())
+}
