@@ -31,6 +31,24 @@ pub async fn interrupted() {
     }
 }
 
+/// Returns when the standard input has ended, which it does when the process that holds its other
+/// end is gone, however it went.
+pub async fn stdin_ended() {
+    let (ended, end) = tokio::sync::oneshot::channel();
+    // A thread of its own: nothing can interrupt a read of the standard input, and a runtime would
+    // wait for it at the end.
+    let reading = std::thread::Builder::new().spawn(move || {
+        let mut stdin = io::stdin().lock();
+        let _ = io::copy(&mut stdin, &mut io::sink());
+        let _ = ended.send(());
+    });
+    if let Err(error) = reading {
+        tracing::warn!("cannot watch the standard input: {error}");
+        return std::future::pending().await;
+    }
+    let _ = end.await;
+}
+
 #[cfg(unix)]
 async fn terminated() {
     use tokio::signal::unix::{SignalKind, signal};

@@ -1,0 +1,119 @@
+//! What an agent shows of itself, at whatever level it is.
+
+use agent_core::agent::{Agent, Goal, Intention, ResumedBy, WaitsFor};
+use agent_core::model::Atom;
+use agent_core::planner::{Plan, Planner};
+use agent_core::protocol::Urgency;
+use serde_json::{Value, json};
+
+use crate::inspect::Inspect;
+
+impl<P: Planner> Inspect for Agent<P> {
+    fn status(&self) -> Value {
+        let action = self.executing().map(|(id, action, stopping)| {
+            json!({ "id": id.to_string(), "action": action.to_string(), "stopping": stopping })
+        });
+        let phase = match (self.running(), self.executing()) {
+            (None, _) => "idle",
+            (Some(_), None) => "planning",
+            (Some(_), Some((_, _, false))) => "executing",
+            (Some(_), Some((_, _, true))) => "stopping",
+        };
+        let waiting = self.waiting().intentions().iter();
+        let aside = self.aside().goals().iter().map(|(intention, waits_for)| {
+            let mut goal = goal(&intention.goal);
+            match waits_for {
+                WaitsFor::User => goal["waits_for"] = json!("the user"),
+                WaitsFor::Facts(facts) => goal["blocked_by"] = json!(texts(facts)),
+            }
+            goal
+        });
+        json!({
+            "phase": phase,
+            "running": self.running().map(|intention| goal(&intention.goal)),
+            "action": action,
+            "suspended": self.stack().entries().iter()
+                .map(|entry| goal(&entry.intention.goal)).collect::<Vec<_>>(),
+            "waiting": waiting.map(|intention| goal(&intention.goal)).collect::<Vec<_>>(),
+            "aside": aside.collect::<Vec<_>>(),
+            "stack_depth": self.stack().depth(),
+            "counts": self.counts(),
+        })
+    }
+
+    fn belief(&self) -> Value {
+        let values = self.belief().values();
+        json!({
+            "facts": texts(self.belief().facts()),
+            "values": values
+                .map(|(function, value)| format!("(= {function} {value})"))
+                .collect::<Vec<_>>(),
+        })
+    }
+
+    fn plans(&self) -> Value {
+        match self.running() {
+            None => json!([]),
+            Some(intention) => plans(intention),
+        }
+    }
+
+    fn stack(&self) -> Value {
+        let entries = self.stack().entries().iter().map(|entry| {
+            let intention = &entry.intention;
+            let records = intention.records.iter().map(|record| {
+                json!({
+                    "id": record.id.to_string(),
+                    "executor": record.executor.as_str(),
+                    "action": record.step.action().to_string(),
+                })
+            });
+            let mut shown = goal(&intention.goal);
+            shown["resumed_by"] = json!(match entry.resumed_by {
+                ResumedBy::Agent => "agent",
+                ResumedBy::Superior => "superior",
+            });
+            shown["holds"] = json!(intention.fits);
+            shown["records"] = records.collect();
+            shown["plans"] = plans(intention);
+            shown
+        });
+        entries.collect()
+    }
+}
+
+fn goal(goal: &Goal) -> Value {
+    let mut shown = json!({
+        "id": goal.id.as_str(),
+        "tasks": texts(&goal.tasks),
+        "urgency": match goal.urgency {
+            Urgency::Normal => "normal",
+            Urgency::Emergency => "emergency",
+        },
+        "priority": goal.priority,
+    });
+    if let Some(deadline) = goal.deadline {
+        shown["deadline_s"] = json!(deadline.secs());
+    }
+    if let Some((superior, _)) = &goal.superior {
+        shown["superior"] = json!(superior.as_str());
+    }
+    shown
+}
+
+/// The one that is followed first.
+fn plans(intention: &Intention) -> Value {
+    let plans = intention.plans.iter().map(|plan: &Plan| {
+        let rest = plan.rest.items().map(|item| item.atom());
+        json!({
+            "steps": texts(&plan.actions()),
+            "rest": texts(rest),
+            "cost": plan.cost.units(),
+        })
+    });
+    plans.collect()
+}
+
+fn texts<'a>(atoms: impl IntoIterator<Item = &'a Atom>) -> Vec<String> {
+    atoms.into_iter().map(ToString::to_string).collect()
+}
