@@ -4,6 +4,8 @@
 //! map of its own: the map of the area it works in comes with its parent's instruction (the paper,
 //! section 7).
 
+pub mod program;
+
 use std::sync::Arc;
 
 use agent_core::agent::{Configuration, Executors, Policy};

@@ -4,6 +4,8 @@
 //! map of the area that the action is about. It does not know how the child does it, nor that
 //! there is a robot below.
 
+pub mod program;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

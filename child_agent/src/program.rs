@@ -1,0 +1,71 @@
+//! The child as a program: arguments, then drive.
+
+use agent_core::agent::Agent;
+use agent_link::options::{LinkOptions, PlaceOptions, PlannerOptions};
+use agent_link::{RoleError, Wiring, drive_agent_in_world};
+use clap::Args;
+use maps::Place;
+
+use crate::SetupError;
+
+/// What a child is started with.
+#[derive(Args, Clone, Debug)]
+pub struct ChildArgs {
+    #[command(flatten)]
+    link: LinkOptions,
+    #[command(flatten)]
+    place: PlaceOptions,
+    #[command(flatten)]
+    planner: PlannerOptions,
+    /// Its name, by which parents instruct it.
+    #[arg(long, value_name = "NAME", default_value = crate::NAME)]
+    name: String,
+    /// The robot's controller that does what this one plans.
+    #[arg(long, value_name = "NAME", default_value = "executor")]
+    executor: String,
+}
+
+/// Why a child could not start or could not go on.
+#[derive(Debug, thiserror::Error)]
+pub enum ProgramError {
+    /// The folder with map and domains; a finding a line.
+    #[error("the place is not in order:\n{0}")]
+    Place(String),
+    /// The arguments do not fit the place.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// Connection, clock, loop.
+    #[error(transparent)]
+    Role(#[from] RoleError),
+}
+
+/// Runs a child until it is told to end.
+///
+/// # Errors
+/// If it cannot start or cannot go on.
+pub async fn run(args: ChildArgs) -> Result<(), ProgramError> {
+    let place = match &args.place.place {
+        None => Place::museum(),
+        Some(dir) => Place::read(dir).map_err(|findings| {
+            let lines: Vec<String> = findings.iter().map(ToString::to_string).collect();
+            ProgramError::Place(lines.join("\n"))
+        })?,
+    };
+    let keys = args.link.keys().map_err(RoleError::from)?;
+    let wiring = Wiring {
+        executors: vec![args.executor.clone()],
+        takes_facts: true,
+        ..Wiring::new(&keys, &args.name)
+    };
+    let configuration = crate::configuration(
+        place.site(),
+        place.node(),
+        &args.place.start,
+        &args.executor,
+        &args.name,
+        wiring.epoch,
+    )?;
+    let agent = Agent::new(configuration, args.planner.make());
+    drive_agent_in_world(agent, wiring, &args.link).await?;
+    Ok(())
+}

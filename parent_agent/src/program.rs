@@ -1,0 +1,86 @@
+//! The parent as a program: arguments, then drive.
+
+use std::collections::BTreeMap;
+
+use agent_core::agent::Agent;
+use agent_core::model::Symbol;
+use agent_link::options::{LinkOptions, PlaceOptions, PlannerOptions};
+use agent_link::{RoleError, Wiring, drive_agent_in_world};
+use clap::Args;
+use maps::Place;
+
+use crate::SetupError;
+
+/// What a parent is started with.
+#[derive(Args, Clone, Debug)]
+pub struct ParentArgs {
+    #[command(flatten)]
+    link: LinkOptions,
+    #[command(flatten)]
+    place: PlaceOptions,
+    #[command(flatten)]
+    planner: PlannerOptions,
+    /// The child agent that does what this one plans.
+    #[arg(long, value_name = "NAME", default_value = "child")]
+    child: String,
+    /// A child agent in charge of one area only. May be given several times.
+    #[arg(long, value_name = "AREA=NAME", value_parser = wing)]
+    wing: Vec<(Symbol, Symbol)>,
+}
+
+/// Why a parent could not start or could not go on.
+#[derive(Debug, thiserror::Error)]
+pub enum ProgramError {
+    /// The folder with map and domains; a finding a line.
+    #[error("the place is not in order:\n{0}")]
+    Place(String),
+    /// The arguments do not fit the place.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// Connection, clock, loop.
+    #[error(transparent)]
+    Role(#[from] RoleError),
+}
+
+/// Runs a parent until it is told to end.
+///
+/// # Errors
+/// If it cannot start or cannot go on.
+pub async fn run(args: ParentArgs) -> Result<(), ProgramError> {
+    let place = match &args.place.place {
+        None => Place::museum(),
+        Some(dir) => Place::read(dir).map_err(|findings| {
+            let lines: Vec<String> = findings.iter().map(ToString::to_string).collect();
+            ProgramError::Place(lines.join("\n"))
+        })?,
+    };
+    let keys = args.link.keys().map_err(RoleError::from)?;
+    let wiring = Wiring::new(&keys, crate::NAME);
+    let configuration = crate::configuration(
+        place.site(),
+        place.area(),
+        &args.place.start,
+        &args.child,
+        BTreeMap::from_iter(args.wing),
+        wiring.epoch,
+    )?;
+    let executors = configuration.executors.all();
+    let wiring = Wiring {
+        executors: executors.iter().map(ToString::to_string).collect(),
+        takes_goals: true,
+        takes_facts: true,
+        ..wiring
+    };
+    let agent = Agent::new(configuration, args.planner.make());
+    drive_agent_in_world(agent, wiring, &args.link).await?;
+    Ok(())
+}
+
+fn wing(text: &str) -> Result<(Symbol, Symbol), String> {
+    match text.split_once('=') {
+        Some((area, child)) if !area.is_empty() && !child.is_empty() => {
+            Ok((area.into(), child.into()))
+        }
+        _ => Err("expected an area and a child agent, such as area4=west".to_owned()),
+    }
+}
