@@ -3,13 +3,15 @@
 //! Three state machines in virtual time: the [`World`] is what is there; the [`Controller`] is
 //! what a superior talks to, and knows the world only by its sensors; a [`SimulatedRobot`] is both
 //! of them coupled, one executor to whoever tests or drives agents. `docs/executor.md` says what a
-//! real robot's driver has to fulfil in the controller's place.
+//! real robot's driver has to fulfil in the controller's place. [`program`] drives world and
+//! controller as processes of their own.
 
 mod controller;
 mod faults;
 mod floor;
 mod place;
 mod profile;
+pub mod program;
 mod refusal;
 mod setup;
 mod signal;

@@ -57,6 +57,11 @@ impl Memory {
         self.records.len()
     }
 
+    /// Suspended actions, the latest last.
+    pub(super) fn records(&self) -> impl Iterator<Item = &Record> {
+        self.records.iter()
+    }
+
     pub(super) fn keep(&mut self, record: Record) {
         self.records.push(record);
     }

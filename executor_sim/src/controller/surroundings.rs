@@ -35,6 +35,10 @@ impl Surroundings {
         self.place.as_ref()
     }
 
+    pub(super) fn doors(&self) -> &BTreeMap<Symbol, bool> {
+        &self.doors
+    }
+
     pub(super) fn stands_at(&mut self, place: Place) {
         self.place = Some(place);
     }

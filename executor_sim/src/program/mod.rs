@@ -1,0 +1,79 @@
+//! World and controller as programs: reality does not end when a robot's process does.
+
+mod controller;
+mod shown_world;
+mod world;
+
+use agent_link::RoleError;
+use agent_link::options::PlaceOptions;
+use clap::{Args, Subcommand};
+
+pub use controller::{ControllerArgs, run as run_controller};
+pub use world::{WorldArgs, run as run_world};
+
+use crate::{Floor, FloorError, SetupError, VocabularyError};
+
+/// The controller's name.
+pub const EXECUTOR: &str = "executor";
+/// The world's name.
+pub const WORLD: &str = "world";
+
+/// What is run.
+#[derive(Args, Clone, Debug)]
+pub struct ExecutorArgs {
+    #[command(subcommand)]
+    part: Part,
+}
+
+/// The two halves of a simulated robot.
+#[derive(Clone, Debug, Subcommand)]
+enum Part {
+    /// The robot's controller: takes instructions, gives reports.
+    Controller(ControllerArgs),
+    /// The world: doors, the robot's body, and the clock of all.
+    World(WorldArgs),
+}
+
+/// Why a program could not start or could not go on.
+#[derive(Debug, thiserror::Error)]
+pub enum ProgramError {
+    /// The folder with map and domains; a finding a line.
+    #[error("the place is not in order:\n{0}")]
+    Place(String),
+    /// A map on which no robot can move.
+    #[error("cannot set up the floor: {0}")]
+    Floor(#[from] FloorError),
+    /// An execution model that no robot can follow.
+    #[error("cannot set up the robot: {0}")]
+    Vocabulary(#[from] VocabularyError),
+    /// No such robot on this floor.
+    #[error("cannot set up the world: {0}")]
+    Setup(#[from] SetupError),
+    /// Connection, clock, loop.
+    #[error(transparent)]
+    Role(#[from] RoleError),
+}
+
+/// Runs one half until it is told to end.
+///
+/// # Errors
+/// If it cannot start or cannot go on.
+pub async fn run(args: ExecutorArgs) -> Result<(), ProgramError> {
+    match args.part {
+        Part::Controller(args) => run_controller(args).await,
+        Part::World(args) => run_world(args).await,
+    }
+}
+
+/// The place, and the floor that it is to a robot.
+fn read(options: &PlaceOptions) -> Result<(maps::Place, Floor), ProgramError> {
+    let place = match &options.place {
+        None => maps::Place::museum(),
+        Some(dir) => maps::Place::read(dir).map_err(|findings| {
+            let lines: Vec<String> = findings.iter().map(ToString::to_string).collect();
+            ProgramError::Place(lines.join("\n"))
+        })?,
+    };
+    let floor = Floor::try_from(place.site())?;
+    Ok((place, floor))
+}

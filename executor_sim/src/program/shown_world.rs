@@ -1,0 +1,58 @@
+//! A world that can be looked at.
+
+use agent_core::model::Time;
+use agent_core::protocol::{Input, Machine, Output, Reply};
+use agent_link::{Clock, Inspect};
+use serde_json::{Value, json};
+
+use crate::{MotorCommand, Sensor, World};
+
+/// A [`World`] and the clock that says where in its motions it is: the world itself has none, and
+/// between two events everything in it is a formula of the time.
+pub(super) struct ShownWorld {
+    pub(super) world: World,
+    pub(super) clock: Clock,
+}
+
+impl Machine for ShownWorld {
+    type In = MotorCommand;
+    type Out = Sensor;
+
+    fn handle(&mut self, now: Time, input: Input<MotorCommand>) -> Option<Reply> {
+        self.world.handle(now, input)
+    }
+
+    fn poll_output(&mut self) -> Option<Output<Sensor>> {
+        self.world.poll_output()
+    }
+
+    fn wake_at(&self) -> Option<Time> {
+        self.world.wake_at()
+    }
+}
+
+impl Inspect for ShownWorld {
+    fn status(&self) -> Value {
+        let now = self.clock.now();
+        let pose = self.world.pose(now);
+        json!({
+            "t_s": now.secs(),
+            "speed": self.clock.speed(),
+            "place": self.world.place(now),
+            "where": self.world.place(now).to_string(),
+            "position_m": pose.position_m,
+            "heading_rad": pose.heading_rad,
+            "speed_m_s": pose.speed_m_s,
+            "speaking": pose.speaking,
+            "odometer_m": self.world.odometer_m(now),
+        })
+    }
+
+    fn belief(&self) -> Value {
+        let doors = self.world.doors().iter();
+        let doors: serde_json::Map<String, Value> = doors
+            .map(|(door, open)| (door.to_string(), json!(open)))
+            .collect();
+        json!({ "doors": doors })
+    }
+}
