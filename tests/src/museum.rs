@@ -51,9 +51,14 @@ impl Museum {
 
     /// A robot that stands at `start`.
     pub fn robot(&self, start: &str, faults: Faults) -> SimulatedRobot {
+        self.robot_of(&self.node, start, faults)
+    }
+
+    /// A robot that does the actions of another level.
+    pub fn robot_of(&self, level: &Level, start: &str, faults: Faults) -> SimulatedRobot {
         SimulatedRobot::new(
-            &self.node.domain,
-            &self.node.model,
+            &level.domain,
+            &level.model,
             Floor::try_from(&self.site).expect("the museum is a floor"),
             MoverSpec::default(),
             Place::at(start),

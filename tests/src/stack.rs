@@ -46,6 +46,9 @@ pub enum Heard {
     Facts(Vec<FactChange>),
 }
 
+/// Nothing takes so many steps without taking time.
+const STEPS_AT_ONE_TIME: u32 = 10_000;
+
 /// A robot with its agents, of any number of storeys.
 pub struct Stack {
     now: Time,
@@ -55,6 +58,8 @@ pub struct Stack {
     wire: Wire,
     on_the_way: BTreeMap<(Time, u64), (Symbol, Symbol, Heard)>,
     sent: u64,
+    /// Steps that took no time.
+    steps_now: u32,
     /// Everything that was said: when, by whom.
     pub events: Vec<(Symbol, Event)>,
     /// Everything that was delivered: when, from, to.
@@ -71,6 +76,7 @@ impl Stack {
             wire,
             on_the_way: BTreeMap::new(),
             sent: 0,
+            steps_now: 0,
             events: Vec::new(),
             heard: Vec::new(),
         }
@@ -246,6 +252,16 @@ impl Stack {
             self.now = until;
             return false;
         }
+        self.steps_now = if next > self.now {
+            0
+        } else {
+            self.steps_now + 1
+        };
+        assert!(
+            self.steps_now < STEPS_AT_ONE_TIME,
+            "it goes round in circles:\n{}",
+            self.story()
+        );
         self.now = next;
         if message_at == Some(next)
             && let Some((_, (from, to, what))) = self.on_the_way.pop_first()

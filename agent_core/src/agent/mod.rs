@@ -294,7 +294,9 @@ impl<P: Planner> Machine for Agent<P> {
         if self.planner.is_thinking() {
             return Some(Time::ZERO);
         }
-        let deadlines = self.all_intentions().filter_map(|i| i.goal.deadline);
+        // A goal that is being cancelled has no deadline any more.
+        let pursued = self.all_intentions().filter(|i| i.cancelled.is_none());
+        let deadlines = pursued.filter_map(|i| i.goal.deadline);
         let due = self.running.as_ref().and_then(Running::due);
         deadlines.chain(due).min()
     }

@@ -185,15 +185,18 @@ impl<P: Planner> Agent<P> {
 
 /// The plans that still hold, with what they cost now.
 fn still_valid(problem: &Problem, kept: Vec<Plan>) -> Vec<Plan> {
-    kept.into_iter()
-        .filter_map(|mut plan| {
-            let cost = planner::simulate(problem, &plan.steps, false).ok()?;
-            if plan.rest.is_empty() {
-                plan.cost = cost;
-            }
-            Some(plan)
-        })
-        .collect()
+    // One of which nothing is known but tasks has to be planned for.
+    let kept = kept
+        .into_iter()
+        .filter(|plan| !plan.steps.is_empty() || plan.rest.is_empty());
+    kept.filter_map(|mut plan| {
+        let cost = planner::simulate(problem, &plan.steps, false).ok()?;
+        if plan.rest.is_empty() {
+            plan.cost = cost;
+        }
+        Some(plan)
+    })
+    .collect()
 }
 
 /// The cheapest plan first. A kept plan wins against a new one of the same cost, and an earlier
