@@ -61,6 +61,35 @@ fn a_tour_interrupted_in_mid_explanation_goes_on_with_that_explanation() {
 }
 
 #[test]
+fn a_question_and_a_greeting_break_off_an_explanation_in_mid_sentence() {
+    let mut stack = museum().stack("n1");
+    stack.goal("show", "(show n12)");
+    stack.run_into("child", "(narrate n12)", 5.0);
+    stack.emergency("question", "(answer n12)");
+    stack.run_into("child", "(reply n12)", 3.0);
+    // Too short to be broken off itself.
+    stack.emergency("hello", "(greet guest)");
+    stack.run();
+    for goal in ["hello", "question", "show"] {
+        assert!(stack.succeeded(goal), "{goal}\n{}", stack.story());
+    }
+    assert_eq!(
+        stack.done("executor")[3..],
+        ["(hail guest)", "(reply n12)", "(narrate n12)"],
+        "{}",
+        stack.story()
+    );
+    assert_eq!(
+        stack.resumption("parent", "question"),
+        Some(Resumption::Continued)
+    );
+    assert_eq!(
+        stack.resumption("parent", "show"),
+        Some(Resumption::Continued)
+    );
+}
+
+#[test]
 fn two_nested_emergencies_and_a_closed_door_do_not_lose_the_tour() {
     let mut stack = museum().stack("n1");
     stack.goal("tour", "(guide n40)");

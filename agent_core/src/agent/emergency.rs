@@ -1,6 +1,7 @@
 //! Algorithm 3, emergencies, and Algorithm 4, normal goals: what starts, what interrupts, what is
 //! resumed.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::{Agent, Execution, Goal, Intention, Phase, ResumedBy, Running, WaitsFor};
@@ -88,7 +89,10 @@ impl<P: Planner> Agent<P> {
         let domain = &self.configuration.domain;
         let operators = domain.operators.get(&task.name).map(|o| &o.parameters);
         let Some(parameters) = domain.tasks.get(&task.name).or(operators) else {
-            let known: Vec<&str> = domain.tasks.keys().map(Symbol::as_str).collect();
+            // Actions without a model are those that resume or roll back others.
+            let modelled = self.configuration.model.actions.keys();
+            let known: BTreeSet<&Symbol> = domain.tasks.keys().chain(modelled).collect();
+            let known: Vec<&str> = known.into_iter().map(Symbol::as_str).collect();
             return Err(Rejection::UnknownTask(task.name.clone(), known.join(", ")));
         };
         if parameters.len() != task.args.len() {
