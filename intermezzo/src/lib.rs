@@ -1,1 +1,60 @@
-//! The command that users type
+//! The command that users type.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod cli;
+mod command;
+mod exit;
+mod place;
+mod robot;
+mod scenario;
+mod show;
+mod snapshot;
+mod style;
+mod target;
+
+pub use cli::Cli;
+pub use exit::{Exit, Failure};
+
+use agent_core::protocol::Command as Wish;
+use cli::{Command, DomainCommand, MapCommand, RoleCommand};
+use command::{check, control, demo, goal, status, up, watch};
+
+/// Carries out what was typed.
+///
+/// # Errors
+/// If that is not possible.
+pub async fn run(cli: Cli) -> Result<Exit, Failure> {
+    match cli.command {
+        Command::Demo(args) => demo::run(args).await,
+        Command::Up(args) => up::run(*args).await,
+        Command::Goal(args) => goal::run(args).await,
+        Command::Suspend(args) => control::command(args, Wish::Suspend, "is set aside").await,
+        Command::Resume(args) => control::command(args, Wish::Resume, "may go on").await,
+        Command::Cancel(args) => control::command(args, Wish::Cancel, "is ended").await,
+        Command::Fact(args) => control::fact(args).await,
+        Command::Door(args) => control::door(args).await,
+        Command::Status(args) => status::run(args).await,
+        Command::Watch(args) => watch::run(args).await,
+        Command::Map(MapCommand::Check { file }) => check::map(&file),
+        Command::Domain(DomainCommand::Check { dir }) => check::domain(&dir),
+        Command::Role(role) => run_role(role).await,
+    }
+}
+
+async fn run_role(role: RoleCommand) -> Result<Exit, Failure> {
+    match role {
+        RoleCommand::Parent(args) => parent_agent::program::run(args)
+            .await
+            .map_err(Failure::failed)?,
+        RoleCommand::Child(args) => child_agent::program::run(args)
+            .await
+            .map_err(Failure::failed)?,
+        RoleCommand::Executor(args) => executor_sim::program::run_controller(args)
+            .await
+            .map_err(Failure::failed)?,
+        RoleCommand::World(args) => executor_sim::program::run_world(args)
+            .await
+            .map_err(Failure::failed)?,
+    }
+    Ok(Exit::Done)
+}

@@ -1,0 +1,309 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use agent_link::options::{DEFAULT_ROBOT, PlannerOptions};
+use clap::{Args, Parser, Subcommand};
+
+/// Robots that can be interrupted: they stop in the middle of an action, do what is more urgent,
+/// and take up the interrupted work where that still makes sense.
+#[derive(Debug, Parser)]
+#[command(
+    name = "intermezzo",
+    version,
+    arg_required_else_help = true,
+    propagate_version = true,
+    after_help = "\
+Begin with:
+  intermezzo demo                            a tour with two emergencies, in half a minute
+  intermezzo up                              a robot in the museum, until Ctrl-C; then, elsewhere:
+  intermezzo goal '(guide n40)'              give it something to do
+  intermezzo goal '(go n28)' --emergency     and something more urgent
+  intermezzo status                          see what it has set aside
+
+Exit status:
+  0  all went as it should
+  1  a goal failed or was rejected, a role died, or a file has faults
+  2  the command cannot be carried out as it was typed
+  3  no robot is running, or none answers
+
+Goals and facts are HDDL: (go n4), (and (show n2) (show n12)), (not (open door3_5))."
+)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// A guided tour with two emergencies and a door that closes, played by four processes.
+    Demo(DemoArgs),
+    /// Start a robot and show what it does, until Ctrl-C.
+    Up(Box<UpArgs>),
+    /// Ask a robot to do something.
+    Goal(GoalArgs),
+    /// Set a goal aside until it is resumed.
+    Suspend(CommandArgs),
+    /// Let a goal that was suspended go on.
+    Resume(CommandArgs),
+    /// End a goal; what was half done is undone where the domain says how.
+    Cancel(CommandArgs),
+    /// Tell a robot what is different in the world.
+    Fact(FactArgs),
+    /// Open or close a door of a simulated world.
+    Door(DoorArgs),
+    /// What a robot is doing, has set aside, waits for and believes.
+    Status(StatusArgs),
+    /// What happens from now on, until Ctrl-C.
+    Watch(WatchArgs),
+    /// Look after maps.
+    #[command(subcommand)]
+    Map(MapCommand),
+    /// Look after planning domains.
+    #[command(subcommand)]
+    Domain(DomainCommand),
+    /// One role of a robot, as `up` starts it.
+    #[command(subcommand, hide = true)]
+    Role(RoleCommand),
+}
+
+/// Which robot is meant.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Target {
+    /// The robot; not needed if one is running on this machine.
+    #[arg(long, value_name = "NAME", env = "INTERMEZZO_ROBOT")]
+    pub(crate) robot: Option<String>,
+    /// Where the robot's router listens, if that is on another machine: tcp/192.168.1.7:7447.
+    #[arg(long, value_name = "ENDPOINT")]
+    pub(crate) connect: Vec<String>,
+    /// Zenoh settings (JSON5) for TLS and passwords.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) zenoh_config: Option<PathBuf>,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+The story: a robot guides a visitor from the entrance (n1) to the main hall (n40). In the middle of
+a corridor somebody needs the toilet, and on the way there a child feels ill. While the tour waits, a
+door on its way closes. The robot comes back to the tour with another plan, and arrives.
+
+It is the scenario file intermezzo/scenarios/demo.toml, which `intermezzo up --scenario` reads too.
+
+Examples:
+  intermezzo demo --speed 5     slower, to watch the robot stop and turn
+  intermezzo demo --json        one event a line, for programs")]
+pub(crate) struct DemoArgs {
+    /// How many seconds of the world pass in one.
+    #[arg(long, value_name = "X", default_value_t = 8.0, value_parser = speed)]
+    pub(crate) speed: f64,
+    #[command(flatten)]
+    pub(crate) planner: PlannerOptions,
+    /// One JSON object a line instead of the timeline.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  intermezzo up                                     the museum, in real time
+  intermezzo up --speed 10 --start n40              ten times as fast, from the main hall
+  intermezzo up my/place --robot anna               a place of one's own, a robot of that name
+  intermezzo up --scenario story.toml --until-done  play a story, then end
+
+A scenario is TOML, one event after the other:
+  [[event]]
+  at_s = 2.0                  # seconds after the robot is ready, or
+  while_on = \"arc5\"           # when the robot is well on that arc; or at once
+  say = \"Somebody is in need.\"
+  emergency = \"(go n28)\"      # or goal = …; with id, priority, deadline_s
+                              # or door = \"door4_6\" and state = \"closed\"
+                              # or fact = \"(not (open door4_6))\"
+                              # or suspend, resume, cancel = \"tour\"
+
+Exit status: 0 after Ctrl-C; with --until-done, 0 if all goals of the scenario succeeded, else 1;
+1 if a role dies; 2 if the place or the scenario is not in order.")]
+pub(crate) struct UpArgs {
+    /// A folder with map, domains and execution models, or `museum`, which is built in.
+    #[arg(value_name = "PLACE", default_value = "museum")]
+    pub(crate) place: PathBuf,
+    /// The robot's name. Two robots of different names can run side by side.
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT, env = "INTERMEZZO_ROBOT")]
+    pub(crate) robot: String,
+    /// The node where the robot stands at first.
+    #[arg(long, value_name = "NODE", default_value = "n1")]
+    pub(crate) start: String,
+    /// How many seconds of the world pass in one.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
+    pub(crate) speed: f64,
+    /// Play a story.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scenario: Option<PathBuf>,
+    /// End when all goals of the scenario have ended.
+    #[arg(long, requires = "scenario")]
+    pub(crate) until_done: bool,
+    #[command(flatten)]
+    pub(crate) planner: PlannerOptions,
+    /// Have some actions fail, stop late, refuse to stop or be slow: which ones, this seed decides.
+    #[arg(long, value_name = "SEED")]
+    pub(crate) faults: Option<u64>,
+    /// Where to listen, such as tcp/0.0.0.0:7447 for other machines. Without it, on a free port
+    /// that only this machine can reach.
+    #[arg(long, value_name = "ENDPOINT")]
+    pub(crate) listen: Vec<String>,
+    /// Use the zenoh router there instead of one in this process.
+    #[arg(long, value_name = "ENDPOINT", conflicts_with = "listen")]
+    pub(crate) connect: Vec<String>,
+    /// Zenoh settings (JSON5) for TLS, passwords, access control.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) zenoh_config: Option<PathBuf>,
+    /// One JSON object a line instead of the timeline.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  intermezzo goal '(go n40)'
+  intermezzo goal '(and (show n2) (show n12))' --id morning --wait
+  intermezzo goal '(go n28)' --emergency --priority 5 --deadline 120
+
+Exit status: 0 accepted, with --wait: reached; 1 rejected or failed; 2 not a goal; 3 no robot.")]
+pub(crate) struct GoalArgs {
+    /// One task, or several to be done in this order.
+    #[arg(value_name = "TASK")]
+    pub(crate) task: String,
+    /// Interrupt what is going on; otherwise the goal waits for its turn.
+    #[arg(long, short)]
+    pub(crate) emergency: bool,
+    /// Higher goes first among goals of the same urgency.
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        allow_negative_numbers = true
+    )]
+    pub(crate) priority: i32,
+    /// After this many seconds of the world the goal has failed.
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) deadline: Option<f64>,
+    /// A name for it, for suspend, resume and cancel. Without one the robot makes one.
+    #[arg(long, value_name = "ID")]
+    pub(crate) id: Option<String>,
+    /// Return when the goal has ended.
+    #[arg(long, short)]
+    pub(crate) wait: bool,
+    /// Answer with JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) target: Target,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(crate) struct CommandArgs {
+    /// The goal's name, as `intermezzo goal` has answered and `intermezzo status` shows.
+    pub(crate) goal: String,
+    /// Answer with JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) target: Target,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  intermezzo fact '(not (open door3_5))'
+  intermezzo fact '(= (length arc5) 9)'")]
+pub(crate) struct FactArgs {
+    /// What holds now, or `(not …)` for what no longer does.
+    #[arg(value_name = "FACT")]
+    pub(crate) fact: String,
+    /// Answer with JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) target: Target,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Example: intermezzo door door3_5 closed")]
+pub(crate) struct DoorArgs {
+    /// The door's name on the map.
+    pub(crate) door: String,
+    /// How it is to be.
+    #[arg(value_enum)]
+    pub(crate) state: DoorState,
+    /// Answer with JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) target: Target,
+}
+
+/// How a door can be.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, clap::ValueEnum)]
+pub(crate) enum DoorState {
+    Open,
+    Closed,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(crate) struct StatusArgs {
+    /// Show all plans that are kept, with their costs.
+    #[arg(long)]
+    pub(crate) plans: bool,
+    /// Answer with JSON: status, stack, plans and belief of every agent.
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) target: Target,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(crate) struct WatchArgs {
+    /// One event a line, as a flat JSON object.
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) target: Target,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum MapCommand {
+    /// Name everything that is wrong with a map, each with its line.
+    Check {
+        /// A map in the shape of Nav2's Route Server.
+        file: PathBuf,
+    },
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum DomainCommand {
+    /// Name everything that is wrong with the domains and execution models of a folder.
+    Check {
+        /// A folder with *.hddl and *.toml.
+        dir: PathBuf,
+    },
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum RoleCommand {
+    /// The area level.
+    Parent(parent_agent::program::ParentArgs),
+    /// The node level.
+    Child(child_agent::program::ChildArgs),
+    /// The robot's controller.
+    Executor(executor_sim::program::ControllerArgs),
+    /// The world.
+    World(executor_sim::program::WorldArgs),
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(speed) if speed.is_finite() && speed > 0.0 => Ok(speed),
+        _ => Err("expected a number above zero".to_owned()),
+    }
+}

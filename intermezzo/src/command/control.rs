@@ -1,0 +1,98 @@
+//! `suspend`, `resume`, `cancel`, `fact` and `door`.
+
+use agent_core::language::{nearest, parse_fact_change};
+use agent_core::protocol::Command;
+use agent_link::View;
+use executor_sim::program::WORLD;
+use serde_json::{Value, json};
+
+use crate::cli::{CommandArgs, DoorArgs, DoorState, FactArgs};
+use crate::exit::{Exit, Failure};
+use crate::style::{BAD, GOOD};
+use crate::target::{Connection, unanswered};
+
+/// Suspends, resumes or cancels a goal.
+pub(crate) async fn command(
+    args: CommandArgs,
+    command: fn(agent_core::protocol::GoalId) -> Command,
+    done: &str,
+) -> Result<Exit, Failure> {
+    let connection = Connection::open(&args.target).await?;
+    let command = command(args.goal.as_str().into());
+    let verdict = connection.client.command(&command).await;
+    let verdict = connection.close(verdict.map_err(unanswered)).await?;
+    let words = format!("{} {done}", args.goal);
+    Ok(tell(
+        json!(verdict),
+        verdict.accepted,
+        verdict.reason.as_deref(),
+        &words,
+        args.json,
+    ))
+}
+
+/// Tells a robot what is different.
+pub(crate) async fn fact(args: FactArgs) -> Result<Exit, Failure> {
+    let fact = parse_fact_change(&args.fact).map_err(|error| {
+        Failure::bad_input(format_args!("`{}` is not a fact: {error}", args.fact))
+            .advice("for example: intermezzo fact '(not (open door3_5))'")
+    })?;
+    let connection = Connection::open(&args.target).await?;
+    let verdict = connection.client.facts(&fact.to_string()).await;
+    let verdict = connection.close(verdict.map_err(unanswered)).await?;
+    Ok(tell(
+        json!(verdict),
+        verdict.accepted,
+        verdict.reason.as_deref(),
+        &format!("told that {fact}"),
+        args.json,
+    ))
+}
+
+/// Opens or closes a door.
+pub(crate) async fn door(args: DoorArgs) -> Result<Exit, Failure> {
+    let connection = Connection::open(&args.target).await?;
+    let result = set_door(&connection, &args).await;
+    connection.close(result).await
+}
+
+async fn set_door(connection: &Connection, args: &DoorArgs) -> Result<Exit, Failure> {
+    let client = &connection.client;
+    let belief = client.look(WORLD, View::Belief).await.map_err(unanswered)?;
+    let doors = belief["doors"].as_object().cloned().unwrap_or_default();
+    if !doors.contains_key(&args.door) {
+        let names = doors.keys().map(String::as_str);
+        let failure = Failure::bad_input(format_args!("there is no door `{}`", args.door));
+        return Err(match nearest(&args.door, names) {
+            Some(near) => failure.advice(near),
+            None => {
+                let names: Vec<&str> = doors.keys().map(String::as_str).collect();
+                failure.advice(format_args!("one of {}", names.join(", ")))
+            }
+        });
+    }
+    let (fact, state) = match args.state {
+        DoorState::Open => (format!("(open {})", args.door), "open"),
+        DoorState::Closed => (format!("(not (open {}))", args.door), "closed"),
+    };
+    let verdict = client.facts(&fact).await.map_err(unanswered)?;
+    Ok(tell(
+        json!(verdict),
+        verdict.accepted,
+        verdict.reason.as_deref(),
+        &format!("{} is {state}", args.door),
+        args.json,
+    ))
+}
+
+fn tell(verdict: Value, accepted: bool, reason: Option<&str>, words: &str, as_json: bool) -> Exit {
+    if as_json {
+        anstream::println!("{verdict}");
+    } else if accepted {
+        anstream::println!("{GOOD}ok{GOOD:#} {words}");
+    } else {
+        let reason = reason.unwrap_or("no reason given");
+        anstream::eprintln!("{BAD}rejected:{BAD:#} {reason}");
+    }
+    if accepted { Exit::Done } else { Exit::Failed }
+}

@@ -1,0 +1,9 @@
+//! What each command does.
+
+pub(crate) mod check;
+pub(crate) mod control;
+pub(crate) mod demo;
+pub(crate) mod goal;
+pub(crate) mod status;
+pub(crate) mod up;
+pub(crate) mod watch;

@@ -1,0 +1,77 @@
+//! How the command ends: exit status and words.
+
+use std::fmt;
+use std::process::ExitCode;
+
+/// The exit statuses, as `--help` documents them.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Exit {
+    /// All went as it should.
+    Done = 0,
+    /// A goal or a robot did not, or a file was found to have faults.
+    Failed = 1,
+    /// The command cannot be carried out as it was typed.
+    BadInput = 2,
+    /// No robot, or none that answers.
+    NobodyThere = 3,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}
+
+/// Why a command could not be carried out.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Failure {
+    /// The status to exit with.
+    pub exit: Exit,
+    /// What is wrong, and where.
+    pub what: String,
+    /// What to do about it.
+    pub advice: Option<String>,
+}
+
+impl Failure {
+    /// Something went otherwise than it should.
+    pub fn failed(what: impl fmt::Display) -> Self {
+        Self::new(Exit::Failed, what)
+    }
+
+    /// What was typed makes no sense.
+    pub fn bad_input(what: impl fmt::Display) -> Self {
+        Self::new(Exit::BadInput, what)
+    }
+
+    /// Nobody answers.
+    pub fn nobody_there(what: impl fmt::Display) -> Self {
+        Self::new(Exit::NobodyThere, what)
+    }
+
+    fn new(exit: Exit, what: impl fmt::Display) -> Self {
+        Self {
+            exit,
+            what: what.to_string(),
+            advice: None,
+        }
+    }
+
+    /// The same, with what to do about it.
+    #[must_use]
+    pub fn advice(mut self, advice: impl fmt::Display) -> Self {
+        self.advice = Some(advice.to_string());
+        self
+    }
+}
+
+impl Failure {
+    /// On the standard error, in colour if that is a terminal.
+    pub fn print(&self) {
+        use crate::style::{ADVICE, BAD};
+        anstream::eprintln!("{BAD}error:{BAD:#} {}", self.what);
+        if let Some(advice) = &self.advice {
+            anstream::eprintln!("{ADVICE}  try:{ADVICE:#} {advice}");
+        }
+    }
+}

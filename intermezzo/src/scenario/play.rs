@@ -1,0 +1,197 @@
+//! Playing a story to a robot.
+
+use std::collections::BTreeSet;
+
+use agent_core::model::{Symbol, Time};
+use agent_core::protocol::{Event, GoalId, Happening};
+use agent_link::{Client, Clock};
+use tokio::sync::mpsc;
+
+use super::{Scenario, ScenarioEvent, What, When};
+use crate::snapshot::{Snapshot, Spot};
+
+/// Nearer to either end than this share of the arc, a robot may be about to stop there anyway.
+const WELL_ON: std::ops::Range<f64> = 0.2..0.75;
+
+/// What a story has come to.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Told {
+    /// Something is said, or happens.
+    Said(ScenarioEvent),
+    /// The robot does not want it, in its words.
+    Refused(ScenarioEvent, String),
+}
+
+/// Plays a story: one event after the other, each when its time has come.
+///
+/// The robot's answers are waited for elsewhere, so that whoever shows what happens goes on.
+#[derive(Debug)]
+pub(crate) struct Player {
+    events: std::vec::IntoIter<ScenarioEvent>,
+    next: Option<ScenarioEvent>,
+    ready: Time,
+    /// The goals that have not ended.
+    open: BTreeSet<GoalId>,
+    failed: Vec<String>,
+    deeds: mpsc::UnboundedSender<ScenarioEvent>,
+    refusals: mpsc::UnboundedReceiver<(ScenarioEvent, String)>,
+}
+
+impl Player {
+    /// Begins to play to a robot that is ready now.
+    pub(crate) fn new(scenario: Scenario, client: Client, ready: Time) -> Self {
+        let (deeds, mut to_do) = mpsc::unbounded_channel::<ScenarioEvent>();
+        let (refuse, refusals) = mpsc::unbounded_channel();
+        tokio::spawn(async move {
+            while let Some(event) = to_do.recv().await {
+                if let Err(reason) = do_it(&client, &event).await {
+                    // Nobody listens once the story is over.
+                    let _ = refuse.send((event, reason));
+                }
+            }
+        });
+        let open = scenario.goals().cloned().collect();
+        let mut events = scenario.events.into_iter();
+        Self {
+            next: events.next(),
+            events,
+            ready,
+            open,
+            failed: Vec::new(),
+            deeds,
+            refusals,
+        }
+    }
+
+    /// What the story comes to next by the clock, or by what the robot says to it.
+    pub(crate) async fn next(&mut self, clock: &Clock) -> Told {
+        let due = match self.next.as_ref().map(|event| &event.when) {
+            Some(When::Next) => Some(Time::ZERO),
+            Some(When::At(at)) => Some(self.ready + *at),
+            Some(When::WhileOn(_)) | None => None,
+        };
+        let due = async {
+            match due {
+                Some(at) => clock.sleep_until(at).await,
+                None => std::future::pending().await,
+            }
+        };
+        tokio::select! {
+            biased;
+            Some((event, reason)) = self.refusals.recv() => self.refused(event, reason),
+            () = due => match self.go_on() {
+                Some(told) => told,
+                // What is due is there.
+                None => std::future::pending().await,
+            },
+        }
+    }
+
+    /// The robot was seen.
+    pub(crate) fn saw(&mut self, snapshot: &Snapshot) -> Option<Told> {
+        let When::WhileOn(wanted) = &self.next.as_ref()?.when else {
+            return None;
+        };
+        match &snapshot.spot {
+            Spot::Arc { arc, fraction, .. } if arc == wanted && WELL_ON.contains(fraction) => {
+                self.go_on()
+            }
+            _ => None,
+        }
+    }
+
+    fn go_on(&mut self) -> Option<Told> {
+        let event = std::mem::replace(&mut self.next, self.events.next())?;
+        // The task lives as long as this.
+        let _ = self.deeds.send(event.clone());
+        Some(Told::Said(event))
+    }
+
+    fn refused(&mut self, event: ScenarioEvent, reason: String) -> Told {
+        if let Some(What::Goal(goal)) = &event.what
+            && let Some(id) = &goal.id
+        {
+            self.open.remove(id);
+        }
+        self.failed.push(format!("line {}: {reason}", event.line));
+        Told::Refused(event, reason)
+    }
+
+    /// An agent has told something.
+    pub(crate) fn heard(&mut self, agent: &Symbol, event: &Event) {
+        let Some(goal) = event.goal.as_ref().filter(|_| *agent == parent_agent::NAME) else {
+            return;
+        };
+        match &event.what {
+            Happening::GoalSucceeded => {
+                self.open.remove(goal);
+            }
+            Happening::GoalFailed { reason } if self.open.remove(goal) => {
+                self.failed.push(format!("goal {goal} failed: {reason}"));
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether every goal of the story that was begun has ended, and nothing more comes by itself.
+    ///
+    /// An event that waits for the robot to be on some arc does not come any more when the robot
+    /// has nothing left to do; that counts as a failure.
+    pub(crate) fn is_over(&mut self) -> bool {
+        let to_come: BTreeSet<&GoalId> = self
+            .next
+            .iter()
+            .chain(self.events.as_slice())
+            .filter_map(|event| match &event.what {
+                Some(What::Goal(goal)) => goal.id.as_ref(),
+                _ => None,
+            })
+            .collect();
+        if self.open.iter().any(|goal| !to_come.contains(goal)) {
+            return false;
+        }
+        match &self.next {
+            None => true,
+            Some(event) => match &event.when {
+                When::WhileOn(arc) => {
+                    self.failed.push(format!(
+                        "line {}: the robot was never seen well on {arc}",
+                        event.line
+                    ));
+                    true
+                }
+                When::Next | When::At(_) => false,
+            },
+        }
+    }
+
+    /// What went otherwise than it should.
+    pub(crate) fn failed(&self) -> &[String] {
+        &self.failed
+    }
+}
+
+/// Has the robot told. In its words why not, if it does not want that.
+async fn do_it(client: &Client, event: &ScenarioEvent) -> Result<(), String> {
+    let words = |error: agent_link::ClientError| error.to_string();
+    let (accepted, reason) = match &event.what {
+        None => return Ok(()),
+        Some(What::Goal(goal)) => {
+            let verdict = client.goal(goal.clone()).await.map_err(words)?;
+            (verdict.accepted, verdict.reason)
+        }
+        Some(What::Command(command)) => {
+            let verdict = client.command(command).await.map_err(words)?;
+            (verdict.accepted, verdict.reason)
+        }
+        Some(What::Fact(fact)) => {
+            let verdict = client.facts(&fact.to_string()).await.map_err(words)?;
+            (verdict.accepted, verdict.reason)
+        }
+    };
+    if accepted {
+        Ok(())
+    } else {
+        Err(reason.unwrap_or_else(|| "refused without a reason".to_owned()))
+    }
+}

@@ -1,0 +1,126 @@
+//! Showing what a robot does, while it does it.
+
+mod json;
+mod people;
+mod progress;
+mod summary;
+mod words;
+
+use std::pin::Pin;
+
+use agent_core::model::{Symbol, Time};
+use agent_core::protocol::Event;
+use agent_link::{Client, Clock};
+use maps::Site;
+
+use crate::exit::Failure;
+use crate::robot::{Robot, RoleKind, RoleNews};
+use crate::scenario::{Player, Told};
+use crate::snapshot::Snapshot;
+
+pub(crate) use json::JsonLines;
+pub(crate) use people::ForPeople;
+pub(crate) use words::resumption;
+
+/// Where it is shown.
+pub(crate) trait Screen {
+    /// An agent has told something.
+    fn event(&mut self, agent: &Symbol, event: &Event);
+    /// A story goes on.
+    fn told(&mut self, at: Time, told: &Told);
+    /// The robot was seen.
+    fn saw(&mut self, _snapshot: &Snapshot) {}
+    /// A role has written a line to its standard error.
+    fn said(&mut self, role: RoleKind, line: &str);
+}
+
+/// Why there is nothing more to show.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Ending {
+    /// Somebody has pressed Ctrl-C.
+    Interrupted,
+    /// The story is over; what went otherwise than it should.
+    Over(Vec<String>),
+    /// A role has died.
+    Died(RoleKind, String),
+}
+
+/// What else there is to a show.
+pub(crate) struct Programme<'a> {
+    /// The map, for words about where the robot is.
+    pub(crate) site: &'a Site,
+    /// A story that is played.
+    pub(crate) player: Option<Player>,
+    /// Whether the show ends with the story.
+    pub(crate) until_done: bool,
+}
+
+/// Shows what the robot does until there is a reason to end.
+pub(crate) async fn show(
+    robot: &mut Robot,
+    programme: Programme<'_>,
+    interrupted: &mut Pin<&mut impl Future<Output = ()>>,
+    screen: &mut impl Screen,
+) -> Result<Ending, Failure> {
+    let Programme {
+        site,
+        mut player,
+        until_done,
+    } = programme;
+    let client = Client::new(&robot.session, &robot.keys);
+    let mut events = client.events().await.map_err(Failure::failed)?;
+    let poses = robot
+        .session
+        .declare_subscriber(robot.keys.world_pose())
+        .await
+        .map_err(Failure::failed)?;
+    loop {
+        if until_done
+            && let Some(player) = &mut player
+            && player.is_over()
+        {
+            return Ok(Ending::Over(player.failed().to_vec()));
+        }
+        let told = tokio::select! {
+            biased;
+            () = &mut *interrupted => return Ok(Ending::Interrupted),
+            Some(news) = robot.news.recv() => {
+                match news {
+                    RoleNews::Said(role, line) => screen.said(role, &line),
+                    RoleNews::Ended(role, how) => return Ok(Ending::Died(role, how)),
+                }
+                None
+            }
+            Some(event) = events.next() => {
+                match event {
+                    Ok((agent, event)) => {
+                        screen.event(&agent, &event);
+                        if let Some(player) = &mut player {
+                            player.heard(&agent, &event);
+                        }
+                    }
+                    Err(error) => tracing::warn!("an event cannot be read: {error}"),
+                }
+                None
+            }
+            told = next(player.as_mut(), &robot.clock) => Some(told),
+            Ok(sample) = poses.recv_async() => {
+                let snapshot = Snapshot::read(&sample.payload().to_bytes(), site);
+                snapshot.and_then(|snapshot| {
+                    screen.saw(&snapshot);
+                    player.as_mut()?.saw(&snapshot)
+                })
+            }
+        };
+        if let Some(told) = told {
+            screen.told(robot.clock.now(), &told);
+        }
+    }
+}
+
+async fn next(player: Option<&mut Player>, clock: &Clock) -> Told {
+    match player {
+        Some(player) => player.next(clock).await,
+        None => std::future::pending().await,
+    }
+}

@@ -1,0 +1,209 @@
+//! Events in words.
+
+use std::collections::BTreeSet;
+
+use agent_core::model::{Action, Cost, FactChange, Symbol, Task};
+use agent_core::protocol::{Happening, Resumption, Urgency};
+use anstyle::Style;
+
+use crate::style::{AGAIN, ASIDE, BAD, DIM, GOOD, URGENT};
+
+/// A line about an event.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Line {
+    /// One character that can be found at a glance.
+    pub(super) sign: char,
+    pub(super) style: Style,
+    pub(super) text: String,
+}
+
+fn line(sign: char, style: Style, text: impl Into<String>) -> Line {
+    Line {
+        sign,
+        style,
+        text: text.into(),
+    }
+}
+
+/// Which parts of the world people want to hear of: what nobody has to be told to change.
+pub(super) type Observable = BTreeSet<Symbol>;
+
+/// An event of the agent that takes the goals. `None` for what another event tells as well.
+pub(super) fn of_parent(goal: &str, what: &Happening, observable: &Observable) -> Option<Line> {
+    Some(match what {
+        Happening::GoalAccepted {
+            tasks,
+            urgency,
+            priority,
+        } => {
+            let tasks = texts(tasks);
+            let priority = match priority {
+                0 => String::new(),
+                priority => format!(", priority {priority}"),
+            };
+            match urgency {
+                Urgency::Normal => line('+', DIM, format!("{goal}: {tasks}{priority}")),
+                Urgency::Emergency => {
+                    line('!', URGENT, format!("{goal}: {tasks}, urgent{priority}"))
+                }
+            }
+        }
+        Happening::GoalRejected { reason } => line('✗', BAD, format!("refused: {reason}")),
+        Happening::GoalStarted => line('▶', GOOD, format!("begins {goal}")),
+        Happening::GoalSuspended { why, action } => line(
+            '‖',
+            ASIDE,
+            match action {
+                Some(action) => format!("sets {goal} aside in the middle of {action}: {why}"),
+                None => format!("sets {goal} aside between two actions: {why}"),
+            },
+        ),
+        Happening::GoalResumed { how, why, expanded } => line(
+            '↩',
+            AGAIN,
+            format!(
+                "takes up {goal} again, {}: {why} ({expanded} nodes expanded)",
+                resumption(*how)
+            ),
+        ),
+        Happening::GoalSucceeded => line('✓', GOOD, format!("{goal} is done")),
+        Happening::GoalFailed { reason } => line('✗', BAD, format!("{goal} has failed: {reason}")),
+        Happening::GoalBlocked { blocked_by } => line(
+            '■',
+            ASIDE,
+            format!("{goal} is blocked and waits for {}", texts(blocked_by)),
+        ),
+        Happening::PlanSelected {
+            steps,
+            cost,
+            alternatives,
+            why,
+            ..
+        } => line(' ', DIM, plan(steps, *cost, alternatives, why)),
+        Happening::PlanRevised { why, kept } => line(
+            '≠',
+            ASIDE,
+            format!(
+                "the plan of {goal} no longer holds: {why}{}",
+                match kept {
+                    0 => String::new(),
+                    1 => "; another one that is kept does".to_owned(),
+                    kept => format!("; {kept} others that are kept do"),
+                }
+            ),
+        ),
+        Happening::ActionStarted { action, .. } => line('·', Style::new(), action.to_string()),
+        Happening::ActionResumed { action, .. } => line('·', AGAIN, action.to_string()),
+        Happening::ActionRolledBack { action, .. } => {
+            line('·', AGAIN, format!("{action} has undone it"))
+        }
+        Happening::ActionFinished {
+            action,
+            failure: Some(failure),
+            ..
+        } => line('✗', BAD, format!("{action} has failed: {failure}")),
+        Happening::RecordCleared { action, .. } => {
+            line('×', DIM, format!("will not resume {action}"))
+        }
+        Happening::BeliefChanged { changes } => line('i', ASIDE, news(changes, observable)?),
+        Happening::ActionSuspended { .. } | Happening::ActionFinished { failure: None, .. } => {
+            return None;
+        }
+    })
+}
+
+/// An event of an agent below. `task` is what its goal is in its superior's words; `spot` is where
+/// the robot is.
+pub(super) fn of_child(task: &str, what: &Happening, spot: &str) -> Option<Line> {
+    Some(match what {
+        Happening::PlanSelected {
+            steps,
+            cost,
+            alternatives,
+            why,
+            ..
+        } => line(' ', DIM, plan(steps, *cost, alternatives, why)),
+        Happening::ActionSuspended { action, .. } => {
+            line('‖', ASIDE, format!("stops in the middle of {action}{spot}"))
+        }
+        Happening::GoalSuspended { action: None, .. } => line(
+            '‖',
+            ASIDE,
+            format!("stops between two actions of {task}{spot}"),
+        ),
+        Happening::GoalResumed { how, why, .. } => line(
+            '↩',
+            AGAIN,
+            format!("takes up {task} again, {}: {why}", resumption(*how)),
+        ),
+        Happening::ActionResumed { action, .. } => line('·', AGAIN, action.to_string()),
+        Happening::ActionRolledBack { action, .. } => {
+            line('·', AGAIN, format!("{action} has undone it"))
+        }
+        Happening::PlanRevised { why, .. } => line(
+            '≠',
+            DIM,
+            format!("the plan of {task} no longer holds: {why}"),
+        ),
+        Happening::ActionFinished {
+            action,
+            failure: Some(failure),
+            ..
+        } => line('✗', BAD, format!("{action} has failed: {failure}")),
+        Happening::GoalBlocked { blocked_by } => line(
+            '■',
+            ASIDE,
+            format!("{task} is blocked and waits for {}", texts(blocked_by)),
+        ),
+        Happening::GoalRejected { reason } => line('✗', BAD, format!("refused: {reason}")),
+        // Its superior tells the rest, and an action that just goes well needs no words.
+        _ => return None,
+    })
+}
+
+/// Decision 12 in words.
+pub(crate) fn resumption(how: Resumption) -> &'static str {
+    match how {
+        Resumption::Continued => "where it stopped",
+        Resumption::Alternative => "by another plan that was kept",
+        Resumption::Repaired => "by a repaired plan",
+        Resumption::Replanned => "by a new plan",
+    }
+}
+
+fn plan(steps: &[Action], cost: Cost, alternatives: &[Cost], why: &str) -> String {
+    let others = match alternatives.len() {
+        0 => String::new(),
+        1 => ", 1 other kept".to_owned(),
+        others => format!(", {others} others kept"),
+    };
+    // That the cheapest one is taken goes without saying.
+    let why = if why == "it is the cheapest" {
+        String::new()
+    } else {
+        format!(", since {why}")
+    };
+    let steps: Vec<String> = steps.iter().map(ToString::to_string).collect();
+    format!("plan {} (cost {cost}{others}{why})", steps.join(" "))
+}
+
+fn texts(atoms: &[Task]) -> String {
+    let texts: Vec<String> = atoms.iter().map(ToString::to_string).collect();
+    texts.join(" ")
+}
+
+fn news(changes: &[FactChange], observable: &Observable) -> Option<String> {
+    let news: Vec<String> = changes
+        .iter()
+        .filter_map(|change| match change {
+            FactChange::Add(fact) if observable.contains(&fact.name) => {
+                Some(format!("{fact} holds now"))
+            }
+            FactChange::Remove(fact) if observable.contains(&fact.name) => {
+                Some(format!("{fact} holds no longer"))
+            }
+            _ => None,
+        })
+        .collect();
+    (!news.is_empty()).then(|| news.join("; "))
+}

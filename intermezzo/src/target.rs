@@ -1,0 +1,78 @@
+//! The robot that a command is for.
+
+use agent_link::options::DEFAULT_ROBOT;
+use agent_link::registry::{Registry, RegistryError};
+use agent_link::session::{self, Role, SessionError};
+use agent_link::{Client, ClientError, Keys, Session};
+
+use crate::cli::Target;
+use crate::exit::Failure;
+
+/// A connection to one robot.
+pub(crate) struct Connection {
+    pub(crate) session: Session,
+    pub(crate) keys: Keys,
+    pub(crate) client: Client,
+}
+
+impl Connection {
+    /// Finds the robot and connects to it.
+    ///
+    /// # Errors
+    /// If there is none, or none of that name, or nobody answers where it should be.
+    pub(crate) async fn open(target: &Target) -> Result<Self, Failure> {
+        let named = target.robot.as_deref();
+        let file = target.zenoh_config.as_deref();
+        let (robot, connect) = if target.connect.is_empty() && file.is_none() {
+            let running = Registry::of_user()
+                .and_then(|registry| registry.find(named))
+                .map_err(not_found)?;
+            (running.robot, vec![running.endpoint])
+        } else {
+            let robot = named.unwrap_or(DEFAULT_ROBOT).to_owned();
+            (robot, target.connect.clone())
+        };
+        let keys = Keys::new(&robot).map_err(Failure::bad_input)?;
+        let session = session::open(&Role::Client { connect }, file)
+            .await
+            .map_err(|error| match error {
+                SessionError::ConfigFile { .. } | SessionError::Setting { .. } => {
+                    Failure::bad_input(error)
+                }
+                _ => Failure::nobody_there(error)
+                    .advice("is the robot's router there, and may this machine reach it?"),
+            })?;
+        Ok(Self {
+            client: Client::new(&session, &keys),
+            session,
+            keys,
+        })
+    }
+
+    /// Hands `result` on once the session is closed.
+    pub(crate) async fn close<T>(self, result: Result<T, Failure>) -> Result<T, Failure> {
+        session::close(self.session).await;
+        result
+    }
+}
+
+/// What a question without an answer means to the user.
+pub(crate) fn unanswered(error: ClientError) -> Failure {
+    match error {
+        ClientError::NoAnswer { .. } => Failure::nobody_there(error).advice(
+            "`intermezzo status` shows who is there; a robot that just starts needs a second",
+        ),
+        ClientError::Name(_) => Failure::bad_input(error),
+        _ => Failure::failed(error),
+    }
+}
+
+fn not_found(error: RegistryError) -> Failure {
+    match &error {
+        RegistryError::NoneRunning => Failure::nobody_there("no robot is running on this machine")
+            .advice("start one with `intermezzo up`, or name one elsewhere with --connect"),
+        RegistryError::NotRunning { .. } => Failure::nobody_there(error),
+        RegistryError::Several { .. } | RegistryError::Name(_) => Failure::bad_input(error),
+        _ => Failure::failed(error),
+    }
+}
