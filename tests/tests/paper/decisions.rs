@@ -1,5 +1,6 @@
 //! The decisions where the paper is silent, by their numbers in ARCHITECTURE.md.
 
+use agent_core::agent::{ResumedBy, SuspendedGoal};
 use agent_core::model::Time;
 use agent_core::protocol::{
     Answer, Command, GoalRequest, Happening, Input, Instruction, Rejection, Reply, Urgency,
@@ -103,6 +104,11 @@ fn decision_6_what_runs_above_a_goal_is_suspended_and_released_with_it() {
     assert_eq!(child.stacked(), ["superior.1.1", "own"]);
     assert_eq!(child.reported(), ["#1 suspended"]);
     assert_eq!(child.running(), None, "nothing of it restarts by itself");
+    let held = |entry: &SuspendedGoal| entry.resumed_by == ResumedBy::Superior;
+    assert!(
+        child.agent.stack().entries().iter().all(held),
+        "all of it is held"
+    );
     let map = Some(map_of("area1"));
     child.instruct(Instruction::Resume {
         id: of_superior(1),
@@ -201,6 +207,29 @@ fn decision_9_an_emergency_is_acted_on_in_the_midst_of_planning() {
     parent.tell(Input::Goal(request("desk", "(go n4)", Urgency::Emergency)));
     assert_eq!(parent.told(), ["execute #1 (approach n4 area1)"]);
     assert_eq!(parent.stacked(), ["tour"]);
+}
+
+#[test]
+fn decision_11_a_task_under_which_something_was_done_once_is_not_begun_again() {
+    let mut parent = parent();
+    parent.goal("tour", "(tour n2 n3 n4 n5)");
+    let may_begin_again = |parent: &intermezzo_tests::Bench| {
+        let agendas = &parent.agent.running().unwrap().agendas;
+        let mut first = agendas.iter().filter_map(|agenda| agenda.tasks.first());
+        first.any(|(item, _, _)| item.atom().name == "tour")
+    };
+    parent.success(1, &["(at n2)"]);
+    assert!(may_begin_again(&parent), "moving may be repeated");
+    parent.success(2, &[]);
+    assert_eq!(
+        parent.told(),
+        [
+            "execute #1 (approach n2 area1)",
+            "execute #2 (explain n2)",
+            "execute #3 (approach n3 area1)"
+        ]
+    );
+    assert!(!may_begin_again(&parent), "an explanation may not");
 }
 
 #[test]
