@@ -242,3 +242,41 @@ fn resumption(problem: &Problem, kept: &[Plan], selected: &Plan) -> Resumption {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Atom, Cost};
+    use crate::planner::{Item, Step, TaskList};
+
+    fn plan(actions: &[&str], cost: u64) -> Plan {
+        let step = |action: &&str| Step {
+            item: Item::Task(Atom::new(action, [])),
+            cost: Cost::ZERO,
+            frame: None,
+            rest: TaskList::empty(),
+        };
+        Plan {
+            steps: actions.iter().map(step).collect(),
+            rest: TaskList::empty(),
+            cost: Cost(cost),
+        }
+    }
+
+    fn chosen(kept: &[Plan], new: &[Plan]) -> String {
+        let (selected, _) = select(kept.to_vec(), new.to_vec()).expect("there is a plan");
+        selected.purposes().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn the_cheapest_plan_is_selected_whether_kept_or_new() {
+        assert_eq!(chosen(&[plan(&["old"], 5)], &[plan(&["new"], 4)]), "(new)");
+        assert_eq!(chosen(&[plan(&["old"], 3)], &[plan(&["new"], 4)]), "(old)");
+    }
+
+    #[test]
+    fn among_plans_of_the_same_cost_nothing_changes_without_a_reason() {
+        let kept = [plan(&["first"], 4), plan(&["second"], 4)];
+        assert_eq!(chosen(&kept, &[plan(&["new"], 4)]), "(first)");
+    }
+}

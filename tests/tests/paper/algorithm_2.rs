@@ -99,3 +99,28 @@ fn a_late_report_of_an_action_that_has_ended_changes_nothing() {
     assert!(parent.told().is_empty());
     assert_eq!(parent.running().as_deref(), Some("tour"));
 }
+
+#[test]
+fn an_action_whose_protected_state_breaks_is_stopped_and_another_plan_is_followed() {
+    let mut parent = on_the_way();
+    parent.observe(&["(not (open door1_3))"]);
+    assert_eq!(parent.told(), ["suspend #1"]);
+    assert!(parent.said("tour", |what| matches!(what, Happening::PlanRevised { .. })));
+    parent.suspended(1, &["(in area1)"]);
+    assert_eq!(
+        parent.told(),
+        ["clear #1", "execute #2 (enter area1 area2 door1_2)"]
+    );
+    assert_eq!(parent.running().as_deref(), Some("tour"));
+}
+
+#[test]
+fn an_action_that_takes_too_long_is_stopped_and_counts_as_failed() {
+    let mut parent = on_the_way();
+    let due = agent_core::protocol::Machine::wake_at(&parent.agent).expect("it has a time-out");
+    parent.now = due;
+    parent.tell(agent_core::protocol::Input::Wake);
+    assert_eq!(parent.told(), ["suspend #1"]);
+    parent.suspended(1, &["(in area1)"]);
+    assert_eq!(parent.told(), ["resume #1"], "once is not for ever");
+}

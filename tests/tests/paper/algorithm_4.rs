@@ -1,8 +1,9 @@
 //! Normal goal handling.
 
-use agent_core::protocol::Urgency;
+use agent_core::protocol::{Instruction, Urgency};
+use intermezzo_tests::of_superior;
 
-use super::on_the_way;
+use super::{ON_ARC5, entering, on_the_way};
 
 #[test]
 fn normal_goals_are_served_in_the_order_in_which_they_came() {
@@ -48,4 +49,15 @@ fn a_normal_goal_waits_until_the_stack_is_empty() {
     parent.goal("later", "(go n2)");
     parent.success(2, &["(at n4)"]);
     assert_eq!(parent.running().as_deref(), Some("tour"), "not `later`");
+}
+
+#[test]
+fn a_normal_goal_waits_for_goals_that_a_superior_holds_too() {
+    let mut child = entering();
+    child.instruct(Instruction::Suspend { id: of_superior(1) });
+    child.suspended(1, &ON_ARC5);
+    child.goal("own", "(reach n1)");
+    assert_eq!(child.running(), None);
+    child.instruct(Instruction::Clear { id: of_superior(1) });
+    assert_eq!(child.running().as_deref(), Some("own"));
 }
