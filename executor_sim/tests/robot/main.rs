@@ -4,6 +4,7 @@ mod doors;
 mod faults;
 mod instructions;
 mod motion;
+mod museum;
 mod properties;
 mod reality;
 mod rig;
