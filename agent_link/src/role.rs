@@ -23,8 +23,9 @@ use crate::wiring::{LinkError, Wiring};
 /// The world may be started after its robots.
 const PATIENCE_WITH_THE_WORLD: Duration = Duration::from_secs(60);
 
-/// zenoh calls it an error when one answer was enough and a second one comes.
-const DEFAULT_FILTER: &str = "warn,zenoh::api::handlers=off";
+/// What zenoh warns of comes back to us as an error, which we report in our own words; and it calls
+/// it an error when one answer was enough and a second one comes.
+const DEFAULT_FILTER: &str = "warn,zenoh=error,zenoh_config=error,zenoh::api::handlers=off";
 
 /// Why a role could not start or could not go on.
 #[derive(Debug, thiserror::Error)]
