@@ -186,7 +186,7 @@ pub(crate) struct GoalArgs {
     )]
     pub(crate) priority: i32,
     /// After this many seconds of the world the goal has failed.
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(crate) deadline: Option<f64>,
     /// A name for it, for suspend, resume and cancel. Without one the robot makes one.
     #[arg(long, value_name = "ID")]

@@ -52,7 +52,7 @@ impl Failure {
     fn new(exit: Exit, what: impl fmt::Display) -> Self {
         Self {
             exit,
-            what: what.to_string(),
+            what: without_source_places(&what.to_string()),
             advice: None,
         }
     }
@@ -65,6 +65,29 @@ impl Failure {
     }
 }
 
+/// zenoh says where in its source an error arose, which is of no use to who typed a command:
+/// `… Timeout! at /…/orchestrator.rs:388.`
+fn without_source_places(text: &str) -> String {
+    let mut kept = String::new();
+    let mut rest = text;
+    while let Some(start) = rest.find(" at /") {
+        let (before, after) = rest.split_at(start);
+        kept.push_str(before);
+        rest = match after.find(".rs:") {
+            Some(end) if !after[5..end].contains(' ') => {
+                after[end + 4..].trim_start_matches(|c: char| c.is_ascii_digit() || c == '.')
+            }
+            // A path of the user's.
+            _ => {
+                kept.push_str(&after[..5]);
+                &after[5..]
+            }
+        };
+    }
+    kept.push_str(rest);
+    kept
+}
+
 impl Failure {
     /// On the standard error, in colour if that is a terminal.
     pub fn print(&self) {
@@ -73,5 +96,18 @@ impl Failure {
         if let Some(advice) = &self.advice {
             anstream::eprintln!("{ADVICE}  try:{ADVICE:#} {advice}");
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_library_s_source_is_nobody_s_business() {
+        let failure = Failure::failed("no: Timeout! at /home/x/zenoh-1.0/src/a.rs:388. Go");
+        assert_eq!(failure.what, "no: Timeout! Go");
+        let failure = Failure::failed("look at /home/x/map.geojson: it is gone");
+        assert_eq!(failure.what, "look at /home/x/map.geojson: it is gone");
     }
 }

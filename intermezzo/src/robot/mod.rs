@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use agent_link::options::PlannerOptions;
 use agent_link::registry::{Entry, Registry, RegistryError};
-use agent_link::session::{self, Role};
+use agent_link::session::{self, Role, SessionError};
 use agent_link::{Clock, Keys, Session};
 use tokio::sync::mpsc;
 
@@ -84,10 +84,7 @@ impl Robot {
         };
         let session = session::open(&role, setup.zenoh_config.as_deref())
             .await
-            .map_err(|error| {
-                Failure::failed(error)
-                    .advice("is the port in use already? Without --listen a free one is taken")
-            })?;
+            .map_err(|error| not_opened(&error, setup))?;
         let endpoints = if setup.connect.is_empty() {
             session::endpoints(&session).await
         } else {
@@ -179,6 +176,19 @@ async fn first_end(news: &mut mpsc::UnboundedReceiver<RoleNews>) -> Failure {
         }
     }
     Failure::failed("no role has started")
+}
+
+fn not_opened(error: &SessionError, setup: &Setup) -> Failure {
+    match error {
+        SessionError::ConfigFile { .. } | SessionError::Setting { .. } => {
+            Failure::bad_input(error)
+        }
+        _ if setup.connect.is_empty() => Failure::failed(error).advice(
+            "is the address this machine's, and the port free? Without --listen a free one is taken",
+        ),
+        _ => Failure::nobody_there(error)
+            .advice("is there a router, and may this machine reach it?"),
+    }
 }
 
 fn unregistered(error: RegistryError) -> Failure {

@@ -13,6 +13,10 @@ use crate::snapshot::{Snapshot, Spot};
 /// Nearer to either end than this share of the arc, a robot may be about to stop there anyway.
 const WELL_ON: std::ops::Range<f64> = 0.2..0.75;
 
+/// On a busy machine at high speed a robot may cross an arc between two pictures. So long after it
+/// has been sent along it, it has turned towards it and set off.
+const SETTING_OFF: Time = Time(3_000_000);
+
 /// What a story has come to.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Told {
@@ -30,6 +34,8 @@ pub(crate) struct Player {
     events: std::vec::IntoIter<ScenarioEvent>,
     next: Option<ScenarioEvent>,
     ready: Time,
+    /// When a robot that was sent along the arc of the next event is well on it.
+    well_on_at: Option<Time>,
     /// The goals that have not ended.
     open: BTreeSet<GoalId>,
     failed: Vec<String>,
@@ -56,6 +62,7 @@ impl Player {
             next: events.next(),
             events,
             ready,
+            well_on_at: None,
             open,
             failed: Vec::new(),
             deeds,
@@ -68,7 +75,8 @@ impl Player {
         let due = match self.next.as_ref().map(|event| &event.when) {
             Some(When::Next) => Some(Time::ZERO),
             Some(When::At(at)) => Some(self.ready + *at),
-            Some(When::WhileOn(_)) | None => None,
+            Some(When::WhileOn(_)) => self.well_on_at,
+            None => None,
         };
         let due = async {
             match due {
@@ -101,6 +109,7 @@ impl Player {
     }
 
     fn go_on(&mut self) -> Option<Told> {
+        self.well_on_at = None;
         let event = std::mem::replace(&mut self.next, self.events.next())?;
         // The task lives as long as this.
         let _ = self.deeds.send(event.clone());
@@ -119,6 +128,14 @@ impl Player {
 
     /// An agent has told something.
     pub(crate) fn heard(&mut self, agent: &Symbol, event: &Event) {
+        if *agent == executor_sim::program::EXECUTOR
+            && let Happening::ActionStarted { action, .. } | Happening::ActionResumed { action, .. } =
+                &event.what
+            && let Some(When::WhileOn(arc)) = self.next.as_ref().map(|next| &next.when)
+            && action.args.contains(arc)
+        {
+            self.well_on_at = Some(event.at + SETTING_OFF);
+        }
         let Some(goal) = event.goal.as_ref().filter(|_| *agent == parent_agent::NAME) else {
             return;
         };

@@ -82,6 +82,9 @@ impl Screen for JsonLines {
 
 /// A line of this command's own, of the same shape as an event.
 fn line(at: Time, event: &str, mut body: Value) {
+    let goal = body["goal"].take();
+    body["goal"] = goal;
+    body["stack_depth"] = json!(0);
     body["v"] = json!(wire::VERSION);
     body["t_s"] = json!(at.secs());
     body["agent"] = json!("intermezzo");

@@ -138,7 +138,10 @@ impl ForPeople {
                 if self.stack.len() < event.stack_depth {
                     self.stack.push(goal.clone());
                 }
-                self.running = None;
+                // The user may have set aside a goal that did not run.
+                if self.running.as_ref() == Some(goal) {
+                    self.running = None;
+                }
             }
             Happening::GoalSucceeded
             | Happening::GoalFailed { .. }
@@ -218,7 +221,10 @@ impl Screen for ForPeople {
             self.progress.goals(self.running.as_ref(), &self.stack);
         } else if *agent != executor_sim::program::EXECUTOR {
             let bars = self.bars(self.stack.len());
-            let stops = matches!(event.what, Happening::ActionSuspended { .. });
+            let stops = matches!(
+                event.what,
+                Happening::ActionSuspended { .. } | Happening::GoalSuspended { action: None, .. }
+            );
             let known = |last: &Snapshot| last.at >= event.at;
             // Where nobody sees the robot, nobody waits for a picture.
             if stops && self.last.as_ref().is_some_and(|last| !known(last)) {

@@ -14,7 +14,7 @@ impl Progress {
     pub(super) fn new() -> Self {
         // The target hides itself if the standard output is no terminal.
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stdout_with_hz(20));
-        let style = ProgressStyle::with_template("{spinner:.cyan} {msg}");
+        let style = ProgressStyle::with_template("{spinner:.cyan} {wide_msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
         Self {
             bar,

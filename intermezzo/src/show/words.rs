@@ -161,13 +161,13 @@ pub(super) fn of_child(task: &str, what: &Happening, spot: &str) -> Option<Line>
     })
 }
 
-/// Decision 12 in words.
+/// The words of decision 12.
 pub(crate) fn resumption(how: Resumption) -> &'static str {
     match how {
-        Resumption::Continued => "where it stopped",
-        Resumption::Alternative => "by another plan that was kept",
-        Resumption::Repaired => "by a repaired plan",
-        Resumption::Replanned => "by a new plan",
+        Resumption::Continued => "continued",
+        Resumption::Alternative => "alternative plan",
+        Resumption::Repaired => "repaired",
+        Resumption::Replanned => "replanned",
     }
 }
 

@@ -1,0 +1,79 @@
+//! How robots end: nothing is left of them.
+
+use nix::sys::signal::{Signal, kill};
+
+use crate::harness::User;
+
+fn entries(user: &User) -> Vec<String> {
+    let directory = user.path().join("intermezzo");
+    let files = std::fs::read_dir(directory).unwrap();
+    let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| name.ends_with(".json")).collect()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn ctrl_c_ends_a_robot_at_work_and_all_that_belongs_to_it() {
+    for signal in [Signal::SIGINT, Signal::SIGTERM] {
+        let user = User::new().await;
+        let mut up = user.up(&[]).await;
+        assert_eq!(entries(&user), ["robot.json"]);
+        user.ok(&["goal", "(go n40)"]).await;
+        up.until_doing("arc5").await;
+        assert_eq!(up.end_by(signal).await.code(), Some(0));
+        up.assert_nobody_is_left().await;
+        assert_eq!(entries(&user), [""; 0]);
+        assert_eq!(user.run(&["status"]).await.code, Some(3));
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn when_up_is_killed_its_roles_end_by_themselves() {
+    let user = User::new().await;
+    let mut up = user.up(&[]).await;
+    up.end_by(Signal::SIGKILL).await;
+    up.assert_nobody_is_left().await;
+    let said = user.run(&["goal", "(go n4)"]).await;
+    assert_eq!(said.code, Some(3), "{said:?}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_role_that_dies_is_named_and_everything_ends() {
+    let user = User::new().await;
+    let mut up = user.up(&[]).await;
+    let waiting = user.run(&["goal", "(go n40)", "--wait"]);
+    let dying = async {
+        up.until_doing("arc5").await;
+        // In the order of the names: child, executor, parent, world.
+        kill(up.processes[2], Signal::SIGKILL).unwrap();
+        up.to_the_end().await
+    };
+    let (said, status) = tokio::join!(waiting, dying);
+    assert_eq!(status.code(), Some(1));
+    assert_eq!(said.code, Some(3), "{said:?}");
+    let end = up.story.last().unwrap();
+    assert!(
+        end["failed"][0]
+            .as_str()
+            .unwrap()
+            .contains("the parent has died"),
+        "{end}"
+    );
+    up.assert_nobody_is_left().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_story_with_a_goal_that_cannot_be_ends_with_a_failure() {
+    let user = User::new().await;
+    let file = user.path().join("story.toml");
+    let story = "[[event]]\ngoal = \"(go n4)\"\n[[event]]\ngoal = \"(go n99)\"\n";
+    std::fs::write(&file, story).unwrap();
+    let file = file.to_str().unwrap();
+    let mut up = user.up(&["--scenario", file, "--until-done"]).await;
+    assert_eq!(up.to_the_end().await.code(), Some(1));
+    assert_eq!(up.of_goal("goal1").last(), Some(&"goal_succeeded"));
+    let failed = &up.story.last().unwrap()["failed"];
+    assert!(
+        failed[0].as_str().unwrap().contains("unknown object `n99`"),
+        "{failed}"
+    );
+}

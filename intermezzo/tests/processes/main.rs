@@ -1,0 +1,11 @@
+//! The command as users run it: real processes on this machine, synchronised by what they say.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod harness;
+
+mod demo;
+mod ending;
+mod goals;
+mod refusals;
+mod side_by_side;
+mod typing;
