@@ -13,7 +13,8 @@ struct Line {
     v: u32,
     t_s: f64,
     agent: String,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// `null` where the event is about no goal.
+    #[serde(default)]
     goal: Option<String>,
     stack_depth: usize,
     #[serde(flatten)]

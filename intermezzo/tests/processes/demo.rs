@@ -6,7 +6,7 @@ use crate::harness::User;
 async fn the_tour_is_interrupted_twice_and_arrives() {
     let user = User::new().await;
     let mut demo = user.story(&["demo", "--json", "--speed", "50"]).await;
-    let status = demo.to_the_end().await;
+    let status = demo.read_to_the_end().await;
     assert_eq!(status.code(), Some(0), "{:?}", demo.story.last());
     for (goal, life) in [
         (

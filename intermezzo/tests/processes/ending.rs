@@ -45,7 +45,7 @@ async fn a_role_that_dies_is_named_and_everything_ends() {
         up.until_doing("arc5").await;
         // In the order of the names: child, executor, parent, world.
         kill(up.processes[2], Signal::SIGKILL).unwrap();
-        up.to_the_end().await
+        up.read_to_the_end().await
     };
     let (said, status) = tokio::join!(waiting, dying);
     assert_eq!(status.code(), Some(1));
@@ -69,7 +69,7 @@ async fn a_story_with_a_goal_that_cannot_be_ends_with_a_failure() {
     std::fs::write(&file, story).unwrap();
     let file = file.to_str().unwrap();
     let mut up = user.up(&["--scenario", file, "--until-done"]).await;
-    assert_eq!(up.to_the_end().await.code(), Some(1));
+    assert_eq!(up.read_to_the_end().await.code(), Some(1));
     assert_eq!(up.of_goal("goal1").last(), Some(&"goal_succeeded"));
     let failed = &up.story.last().unwrap()["failed"];
     assert!(

@@ -162,7 +162,7 @@ impl Up {
     }
 
     /// Reads to the end.
-    pub async fn to_the_end(&mut self) -> ExitStatus {
+    pub async fn read_to_the_end(&mut self) -> ExitStatus {
         while self.next().await.is_some() {}
         let status = timeout(PATIENCE, self.child.wait()).await;
         status
@@ -174,7 +174,7 @@ impl Up {
     pub async fn end_by(&mut self, signal: Signal) -> ExitStatus {
         let pid = self.child.id().unwrap();
         kill(Pid::from_raw(pid.try_into().unwrap()), signal).unwrap();
-        self.to_the_end().await
+        self.read_to_the_end().await
     }
 
     /// The events that the parent told of a goal, in order.

@@ -9,3 +9,4 @@ mod goals;
 mod refusals;
 mod side_by_side;
 mod typing;
+mod zenoh_command;

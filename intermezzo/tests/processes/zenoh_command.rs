@@ -43,12 +43,32 @@ async fn a_put_and_a_get_of_the_zenoh_command_are_goals() {
     up.until_goal("g2", "goal_succeeded").await;
 
     let goal = r#"{"task":"(go n5)","priority":1,"id":"desk"}"#;
-    let get = ["get", "-s", key, "-v", goal, "--encoder", "text", "--decoder", "text"];
+    let get = [
+        "get",
+        "-s",
+        key,
+        "-v",
+        goal,
+        "--encoder",
+        "text",
+        "--decoder",
+        "text",
+    ];
     let answer = zenoh(&command, &endpoint, &get).await;
     assert!(answer.contains(r#""accepted":true"#), "{answer}");
     up.until_goal("desk", "goal_succeeded").await;
 
-    let unknown = ["get", "-s", key, "-v", "(go n99)", "--encoder", "text", "--decoder", "text"];
+    let unknown = [
+        "get",
+        "-s",
+        key,
+        "-v",
+        "(go n99)",
+        "--encoder",
+        "text",
+        "--decoder",
+        "text",
+    ];
     let answer = zenoh(&command, &endpoint, &unknown).await;
     assert!(answer.contains("unknown object `n99`"), "{answer}");
     up.until_goal("tour", "goal_succeeded").await;
