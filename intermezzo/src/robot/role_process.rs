@@ -80,7 +80,7 @@ impl RoleProcess {
         let failed = |error| Failure::failed(format_args!("cannot start the {kind}: {error}"));
         let mut command = Command::new(std::env::current_exe().map_err(failed)?);
         command
-            .args(["role", kind.name()])
+            .args(["role", kind.name(), "--until-stdin-ends"])
             .args(["--robot", &setup.robot, "--start", &setup.start]);
         for endpoint in endpoints {
             command.args(["--connect", endpoint]);
