@@ -10,7 +10,7 @@ use super::network::TaskList;
 use super::plan::{Agenda, Plan, Step};
 use super::state::Delta;
 use super::{Depth, Outcome, Planner, Problem, Settings};
-use crate::model::{Cost, Fact};
+use crate::model::{Cost, Fact, Literal, Symbol};
 
 /// After the best plan is found, alternatives are looked for with at most this many expansions,
 /// or twice as many as the best plan took.
@@ -86,11 +86,22 @@ struct Search {
     wanted: BTreeSet<Fact>,
     expansions: u64,
     expansions_of_best: u64,
+    /// The predicates on which it hangs what can be done. Others are facts to remember, or bear
+    /// on costs alone.
+    decisive: BTreeSet<Symbol>,
 }
 
 impl Search {
     fn new(problem: Problem, agendas: &[Agenda]) -> Self {
+        let methods = problem.domain.methods.iter().map(|m| &m.precondition);
+        let operators = problem.domain.operators.values().map(|o| &o.precondition);
+        let literals = methods.chain(operators).flatten();
+        let decisive = literals.filter_map(|literal| match literal {
+            Literal::Fact(_, pattern) => Some(pattern.name.clone()),
+            Literal::Equal(..) => None,
+        });
         let mut search = Self {
+            decisive: decisive.collect(),
             problem,
             nodes: Vec::new(),
             frontier: BinaryHeap::new(),
@@ -179,9 +190,20 @@ impl Search {
     }
 
     /// Whether the same state with the same work lies on the way to this node.
+    ///
+    /// Of alternatives more is asked: one that only comes back to where something else could be
+    /// done, by another door, is the best plan with a detour and of no use to anybody.
     fn goes_in_circles(&self, index: usize) -> bool {
         let key = &self.nodes[index].key;
-        self.way_to(index).skip(1).any(|node| node.key == *key)
+        let detours = !self.plans.is_empty();
+        let decides = |(fact, _): &(&Fact, &bool)| self.decisive.contains(&fact.name);
+        self.way_to(index).skip(1).any(|node| {
+            let before = &node.key;
+            before == key
+                || detours
+                    && before.tasks == key.tasks
+                    && (before.delta.iter().filter(decides)).eq(key.delta.iter().filter(decides))
+        })
     }
 
     /// The node and those that lead to it, last first.

@@ -3,7 +3,8 @@
 use agent_core::agent::{ResumedBy, SuspendedGoal};
 use agent_core::model::Time;
 use agent_core::protocol::{
-    Answer, Command, GoalRequest, Happening, Input, Instruction, Rejection, Reply, Urgency,
+    Answer, Command, GoalRequest, Happening, Input, Instruction, Rejection, Reply, Resumption,
+    Urgency,
 };
 use intermezzo_tests::{museum, of_superior};
 
@@ -207,6 +208,86 @@ fn decision_9_an_emergency_is_acted_on_in_the_midst_of_planning() {
     parent.tell(Input::Goal(request("desk", "(go n4)", Urgency::Emergency)));
     assert_eq!(parent.told(), ["execute #1 (approach n4 area1)"]);
     assert_eq!(parent.stacked(), ["tour"]);
+}
+
+#[test]
+fn decision_10_stopping_waits_for_nothing() {
+    let mut parent = on_the_way();
+    let request = GoalRequest {
+        id: Some("desk".into()),
+        tasks: agent_core::language::parse_tasks("(go n4)").unwrap(),
+        urgency: Urgency::Emergency,
+        priority: 0,
+        deadline: None,
+    };
+    // Not for a plan, not for a second look, and before the goal's sender has its answer.
+    let reply = parent.tell_only(Input::Goal(request));
+    assert_eq!(parent.told(), ["suspend #1"]);
+    assert_eq!(reply, Some(Reply::Goal(Ok("desk".into()))));
+}
+
+fn resumption(parent: &intermezzo_tests::Bench, goal: &str) -> Option<Resumption> {
+    let about = parent.events.iter().rev();
+    about
+        .filter(|event| event.goal.as_ref().is_some_and(|id| *id == goal))
+        .find_map(|event| match event.what {
+            Happening::GoalResumed { how, .. } => Some(how),
+            _ => None,
+        })
+}
+
+/// A tour that is suspended in area1 while the robot visits n3; then facts change, and it is
+/// taken up again.
+fn resumed_after(facts: &[&str]) -> intermezzo_tests::Bench {
+    let mut parent = on_the_way();
+    parent.emergency("wall", "(go n3)");
+    parent.suspended(1, &["(in area1)"]);
+    parent.observe(facts);
+    parent.success(2, &["(at n3)"]);
+    parent
+}
+
+#[test]
+fn decision_12_a_plan_that_still_holds_is_continued() {
+    let parent = resumed_after(&[]);
+    assert_eq!(resumption(&parent, "tour"), Some(Resumption::Continued));
+}
+
+#[test]
+fn decision_12_another_plan_that_was_kept_is_an_alternative() {
+    // One door further on is closed: a way round it was kept from the beginning.
+    let parent = resumed_after(&["(not (open door3_5))"]);
+    assert_eq!(resumption(&parent, "tour"), Some(Resumption::Alternative));
+}
+
+#[test]
+fn decision_12_a_new_plan_that_ends_as_a_kept_one_is_repaired() {
+    let parent = resumed_after(&[
+        "(not (open door3_5))",
+        "(not (open door4_6))",
+        "(open door6_8)",
+        "(not (in area1))",
+        "(in area6)",
+    ]);
+    assert_eq!(resumption(&parent, "tour"), Some(Resumption::Repaired));
+}
+
+#[test]
+fn decision_12_a_goal_that_had_no_plan_is_replanned() {
+    let mut configuration = museum().parent("n1");
+    configuration.policy.expansions_per_slice = 1;
+    let mut parent = intermezzo_tests::Bench::new(configuration);
+    let request = |id: &str, tasks: &str, urgency| GoalRequest {
+        id: Some(id.into()),
+        tasks: agent_core::language::parse_tasks(tasks).unwrap(),
+        urgency,
+        priority: 0,
+        deadline: None,
+    };
+    parent.tell_only(Input::Goal(request("tour", "(go n40)", Urgency::Normal)));
+    parent.tell(Input::Goal(request("desk", "(go n4)", Urgency::Emergency)));
+    parent.success(1, &["(at n4)"]);
+    assert_eq!(resumption(&parent, "tour"), Some(Resumption::Replanned));
 }
 
 #[test]
