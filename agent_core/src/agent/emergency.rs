@@ -24,20 +24,15 @@ enum Yield {
 impl<P: Planner> Agent<P> {
     /// Step 1 of Algorithms 3 and 4: a user's goal.
     pub(super) fn accept(&mut self, request: GoalRequest) -> Result<GoalId, Rejection> {
-        let verdict = self.consider(&request);
-        match &verdict {
-            Ok(Some(_)) => {}
-            Ok(None) => self.take_on(request.clone()),
-            Err(rejection) => self.emit(
-                request.id.as_ref(),
-                Happening::GoalRejected {
-                    reason: rejection.to_string(),
-                },
-            ),
+        match self.consider(&request) {
+            Ok(Some(known)) => Ok(known),
+            Ok(None) => Ok(self.take_on(request)),
+            Err(rejection) => {
+                let reason = rejection.to_string();
+                self.emit(request.id.as_ref(), Happening::GoalRejected { reason });
+                Err(rejection)
+            }
         }
-        // A new goal without a name has just been given one.
-        let named = verdict?.or(request.id);
-        Ok(named.unwrap_or_else(|| name_of(self.next_goal - 1)))
     }
 
     /// The goal's name if it is known already, or why it is refused.
@@ -48,22 +43,30 @@ impl<P: Planner> Agent<P> {
         for task in &request.tasks {
             self.understand(task)?;
         }
-        let Some(id) = &request.id else {
-            return Ok(None);
-        };
-        let ended = self.ended.iter().map(|ended| (&ended.id, &ended.tasks));
-        let known = self.all_intentions().map(|i| (&i.goal.id, &i.goal.tasks));
-        match known.chain(ended).find(|(known, _)| *known == id) {
-            Some((id, tasks)) if *tasks == request.tasks => Ok(Some(id.clone())),
-            Some((id, _)) => Err(Rejection::NameTaken(id.clone())),
+        match request
+            .id
+            .as_ref()
+            .and_then(|id| self.tasks_of(id).map(|tasks| (id, tasks)))
+        {
             None => Ok(None),
+            Some((id, tasks)) if tasks == request.tasks => Ok(Some(id.clone())),
+            Some((id, _)) => Err(Rejection::NameTaken(id.clone())),
         }
     }
 
-    fn take_on(&mut self, request: GoalRequest) {
+    /// What a goal is for that is pursued, waits or has ended.
+    fn tasks_of(&self, id: &GoalId) -> Option<&[Task]> {
+        let ended = self.ended.iter().map(|ended| (&ended.id, &ended.tasks));
+        let known = self.all_intentions().map(|i| (&i.goal.id, &i.goal.tasks));
+        let mut all = known.chain(ended);
+        all.find(|(known, _)| *known == id)
+            .map(|(_, tasks)| tasks.as_slice())
+    }
+
+    fn take_on(&mut self, request: GoalRequest) -> GoalId {
         let number = self.next_goal;
         self.next_goal += 1;
-        let id = request.id.unwrap_or_else(|| name_of(number));
+        let id = request.id.unwrap_or_else(|| self.free_name(number));
         self.emit(
             Some(&id),
             Happening::GoalAccepted {
@@ -73,7 +76,7 @@ impl<P: Planner> Agent<P> {
             },
         );
         self.waiting.add(Intention::new(Goal {
-            id,
+            id: id.clone(),
             tasks: request.tasks,
             urgency: request.urgency,
             priority: request.priority,
@@ -82,6 +85,15 @@ impl<P: Planner> Agent<P> {
             superior: None,
             map: self.map.clone(),
         }));
+        id
+    }
+
+    /// `g` and a number, `from` that on, that no user has given to a goal.
+    fn free_name(&self, from: u64) -> GoalId {
+        let mut names = (from..).map(|number| GoalId::from(format!("g{number}")));
+        let free = names.find(|name| self.tasks_of(name).is_none());
+        // Numbers do not run out.
+        free.unwrap_or_default()
     }
 
     /// Whether a task is one of the domain's, about objects that fit.
@@ -364,8 +376,4 @@ impl<P: Planner> Agent<P> {
         );
         true
     }
-}
-
-fn name_of(number: u64) -> GoalId {
-    format!("g{number}").into()
 }

@@ -393,6 +393,27 @@ fn what_a_user_cancels_is_rolled_back_where_the_domain_says_how() {
 }
 
 #[test]
+fn a_goal_without_a_name_gets_one_that_nobody_has_given() {
+    let mut parent = on_the_way();
+    let mut name = |id: Option<&str>| {
+        let request = GoalRequest {
+            id: id.map(Into::into),
+            tasks: agent_core::language::parse_tasks("(go n4)").unwrap(),
+            urgency: Urgency::Normal,
+            priority: 0,
+            deadline: None,
+        };
+        match parent.tell(Input::Goal(request)) {
+            Some(Reply::Goal(Ok(id))) => id.to_string(),
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(name(Some("g3")), "g3");
+    assert_eq!(name(None), "g4", "the third of this agent, but g3 is taken");
+    assert_eq!(name(None), "g5", "and so is g4 now");
+}
+
+#[test]
 fn a_goal_named_twice_is_one_goal_and_bad_goals_are_refused_with_a_reason() {
     let mut parent = on_the_way();
     assert_eq!(
