@@ -1,6 +1,6 @@
 //! What users ask about goals that were accepted.
 
-use super::{Agent, WaitsFor};
+use super::{Agent, Intention, WaitsFor};
 use crate::planner::{Agenda, Origin, Planner, TaskList};
 use crate::protocol::{Command, GoalId, Happening, Rejection, Report};
 
@@ -102,25 +102,28 @@ impl<P: Planner> Agent<P> {
             .remove(goal)
             .or_else(|| self.waiting.remove(goal));
         if let Some(intention) = found.or_else(|| self.aside.remove(goal)) {
-            let reason = reason.to_owned();
-            self.clear_all(&intention);
-            self.emit(
-                Some(goal),
-                Happening::GoalFailed {
-                    reason: reason.clone(),
-                },
-            );
-            let outcome = Report::Failure {
-                reason,
-                facts: Vec::new(),
-                blocked_by: Vec::new(),
-            };
-            self.remember(&intention, outcome);
+            self.drop_goal(&intention, reason);
         }
     }
 
+    /// Gives up a goal that is not running and has been taken out of wherever it stood.
+    pub(super) fn drop_goal(&mut self, intention: &Intention, reason: &str) {
+        self.clear_all(intention);
+        let reason = reason.to_owned();
+        let what = Happening::GoalFailed {
+            reason: reason.clone(),
+        };
+        self.emit(Some(&intention.goal.id), what);
+        let outcome = Report::Failure {
+            reason,
+            facts: Vec::new(),
+            blocked_by: Vec::new(),
+        };
+        self.remember(intention, outcome);
+    }
+
     /// The work of undoing what is half done, the latest first; `None` if nothing need be.
-    fn undoing(&self, intention: &super::Intention) -> Option<Agenda> {
+    fn undoing(&self, intention: &Intention) -> Option<Agenda> {
         let problem = self.problem_of(Some(intention));
         let tasks = intention
             .records

@@ -171,20 +171,7 @@ impl<P: Planner> Agent<P> {
         };
         let goal = self.stack.entries()[place].intention.goal.id.clone();
         if let Some(intention) = self.stack.remove(&goal) {
-            self.clear_all(&intention);
-            let reason = format!("{from} has cleared it");
-            self.emit(
-                Some(&goal),
-                Happening::GoalFailed {
-                    reason: reason.clone(),
-                },
-            );
-            let outcome = Report::Failure {
-                reason,
-                facts: Vec::new(),
-                blocked_by: Vec::new(),
-            };
-            self.remember(&intention, outcome);
+            self.drop_goal(&intention, &format!("{from} has cleared it"));
         }
         let own = self.stack.entries().iter().skip(place);
         let own_above = own

@@ -10,6 +10,17 @@ use intermezzo_tests::{museum, of_superior};
 
 use super::{ON_ARC5, entering, map_of, on_the_way, parent};
 
+/// A goal as it comes in.
+fn request(id: Option<&str>, tasks: &str, urgency: Urgency) -> GoalRequest {
+    GoalRequest {
+        id: id.map(Into::into),
+        tasks: agent_core::language::parse_tasks(tasks).unwrap(),
+        urgency,
+        priority: 0,
+        deadline: None,
+    }
+}
+
 #[test]
 fn decision_1_an_instruction_starts_above_a_held_goal() {
     // Read literally, the emergency's subgoal waits for a stack that only its parent can empty,
@@ -143,11 +154,8 @@ fn decision_7_a_deadline_ends_a_blocked_goal() {
     let mut parent = parent();
     parent.observe(&["(not (open door7_8))"]);
     let request = GoalRequest {
-        id: Some("tour".into()),
-        tasks: agent_core::language::parse_tasks("(go n40)").unwrap(),
-        urgency: Urgency::Normal,
-        priority: 0,
         deadline: Some(Time::from_secs(30.0)),
+        ..request(Some("tour"), "(go n40)", Urgency::Normal)
     };
     parent.tell(Input::Goal(request));
     assert_eq!(
@@ -195,17 +203,18 @@ fn decision_9_an_emergency_is_acted_on_in_the_midst_of_planning() {
     let mut configuration = museum().parent("n1");
     configuration.policy.expansions_per_slice = 1;
     let mut parent = intermezzo_tests::Bench::new(configuration);
-    let request = |id: &str, tasks: &str, urgency| GoalRequest {
-        id: Some(id.into()),
-        tasks: agent_core::language::parse_tasks(tasks).unwrap(),
-        urgency,
-        priority: 0,
-        deadline: None,
-    };
-    let reply = parent.tell_only(Input::Goal(request("tour", "(go n40)", Urgency::Normal)));
+    let reply = parent.tell_only(Input::Goal(request(
+        Some("tour"),
+        "(go n40)",
+        Urgency::Normal,
+    )));
     assert_eq!(reply, Some(Reply::Goal(Ok("tour".into()))));
     assert!(parent.told().is_empty(), "one expansion makes no plan");
-    parent.tell(Input::Goal(request("desk", "(go n4)", Urgency::Emergency)));
+    parent.tell(Input::Goal(request(
+        Some("desk"),
+        "(go n4)",
+        Urgency::Emergency,
+    )));
     assert_eq!(parent.told(), ["execute #1 (approach n4 area1)"]);
     assert_eq!(parent.stacked(), ["tour"]);
 }
@@ -213,13 +222,7 @@ fn decision_9_an_emergency_is_acted_on_in_the_midst_of_planning() {
 #[test]
 fn decision_10_stopping_waits_for_nothing() {
     let mut parent = on_the_way();
-    let request = GoalRequest {
-        id: Some("desk".into()),
-        tasks: agent_core::language::parse_tasks("(go n4)").unwrap(),
-        urgency: Urgency::Emergency,
-        priority: 0,
-        deadline: None,
-    };
+    let request = request(Some("desk"), "(go n4)", Urgency::Emergency);
     // Not for a plan, not for a second look, and before the goal's sender has its answer.
     let reply = parent.tell_only(Input::Goal(request));
     assert_eq!(parent.told(), ["suspend #1"]);
@@ -277,15 +280,16 @@ fn decision_12_a_goal_that_had_no_plan_is_replanned() {
     let mut configuration = museum().parent("n1");
     configuration.policy.expansions_per_slice = 1;
     let mut parent = intermezzo_tests::Bench::new(configuration);
-    let request = |id: &str, tasks: &str, urgency| GoalRequest {
-        id: Some(id.into()),
-        tasks: agent_core::language::parse_tasks(tasks).unwrap(),
-        urgency,
-        priority: 0,
-        deadline: None,
-    };
-    parent.tell_only(Input::Goal(request("tour", "(go n40)", Urgency::Normal)));
-    parent.tell(Input::Goal(request("desk", "(go n4)", Urgency::Emergency)));
+    parent.tell_only(Input::Goal(request(
+        Some("tour"),
+        "(go n40)",
+        Urgency::Normal,
+    )));
+    parent.tell(Input::Goal(request(
+        Some("desk"),
+        "(go n4)",
+        Urgency::Emergency,
+    )));
     parent.success(1, &["(at n4)"]);
     assert_eq!(resumption(&parent, "tour"), Some(Resumption::Replanned));
 }
@@ -396,13 +400,7 @@ fn what_a_user_cancels_is_rolled_back_where_the_domain_says_how() {
 fn a_goal_without_a_name_gets_one_that_nobody_has_given() {
     let mut parent = on_the_way();
     let mut name = |id: Option<&str>| {
-        let request = GoalRequest {
-            id: id.map(Into::into),
-            tasks: agent_core::language::parse_tasks("(go n4)").unwrap(),
-            urgency: Urgency::Normal,
-            priority: 0,
-            deadline: None,
-        };
+        let request = request(id, "(go n4)", Urgency::Normal);
         match parent.tell(Input::Goal(request)) {
             Some(Reply::Goal(Ok(id))) => id.to_string(),
             other => panic!("{other:?}"),
