@@ -11,11 +11,11 @@ use super::{Scenario, ScenarioEvent, What, When};
 use crate::snapshot::{Snapshot, Spot};
 
 /// Nearer to either end than this share of the arc, a robot may be about to stop there anyway.
-const WELL_ON: std::ops::Range<f64> = 0.2..0.75;
+const WELL_ON: std::ops::Range<f64> = 0.35..0.75;
 
 /// On a busy machine at high speed a robot may cross an arc between two pictures. So long after it
 /// has been sent along it, it has turned towards it and set off.
-const SETTING_OFF: Time = Time(3_000_000);
+const SETTING_OFF: Time = Time(4_500_000);
 
 /// What a story has come to.
 #[derive(Clone, Debug, PartialEq)]
