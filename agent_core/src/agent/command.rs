@@ -107,7 +107,7 @@ impl<P: Planner> Agent<P> {
     }
 
     /// Gives up a goal that is not running and has been taken out of wherever it stood.
-    pub(super) fn drop_goal(&mut self, intention: &Intention, reason: &str) {
+    fn drop_goal(&mut self, intention: &Intention, reason: &str) {
         self.clear_all(intention);
         let reason = reason.to_owned();
         let what = Happening::GoalFailed {

@@ -171,7 +171,18 @@ impl<P: Planner> Agent<P> {
         };
         let goal = self.stack.entries()[place].intention.goal.id.clone();
         if let Some(intention) = self.stack.remove(&goal) {
-            self.drop_goal(&intention, &format!("{from} has cleared it"));
+            self.clear_all(&intention);
+            let action = intention.goal.tasks.first();
+            if let Some(action) = action.cloned() {
+                let id = id.clone();
+                self.emit(Some(&goal), Happening::RecordCleared { id, action });
+            }
+            let outcome = Report::Failure {
+                reason: format!("{from} has cleared it"),
+                facts: Vec::new(),
+                blocked_by: Vec::new(),
+            };
+            self.remember(&intention, outcome);
         }
         let own = self.stack.entries().iter().skip(place);
         let own_above = own

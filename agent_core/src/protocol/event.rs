@@ -136,7 +136,8 @@ pub enum Happening {
         /// Why not, if it failed.
         failure: Option<String>,
     },
-    /// The executor was told to drop a record.
+    /// The executor was told to drop a record, or a superior has had the goal itself dropped: then
+    /// the execution is the superior's.
     RecordCleared {
         /// Which execution.
         id: ActionId,
