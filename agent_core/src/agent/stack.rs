@@ -75,6 +75,18 @@ impl SuspendedGoalStack {
         }
     }
 
+    /// Takes a superior's goal to the top, with the agent's own goals that were suspended with it
+    /// above it, and leaves them to the agent (Algorithm 5, step 9; decision 6). Other goals that
+    /// a superior holds stay where they are and stay held.
+    pub fn release(&mut self, place: usize) {
+        let own = |entry: &&SuspendedGoal| entry.intention.goal.superior.is_none();
+        let above = self.entries.iter().skip(place + 1).take_while(own).count();
+        let released: Vec<_> = self.entries.drain(place..=place + above).collect();
+        let first = self.entries.len();
+        self.entries.extend(released);
+        self.set_resumed_by(first, ResumedBy::Agent);
+    }
+
     /// How many goals are suspended.
     pub fn depth(&self) -> usize {
         self.entries.len()

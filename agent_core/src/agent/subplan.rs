@@ -145,11 +145,11 @@ impl<P: Planner> Agent<P> {
         }
         if let Some(place) = self.stack.place_of(from, id) {
             self.take_map(map);
-            self.stack.set_resumed_by(place, ResumedBy::Agent);
             let map = self.map.clone();
             if let Some(intention) = self.stack.intentions_mut().nth(place) {
                 intention.goal.map = map;
             }
+            self.stack.release(place);
             self.report(from, id, Report::Started);
             return Answer::Accepted;
         }

@@ -176,3 +176,27 @@ fn a_failure_names_the_facts_that_are_in_the_way() {
     child.success(1, &["(not (at n1))", "(at n6)"]);
     assert_eq!(child.reported(), ["#1 failure [(open door1_3)]"]);
 }
+
+#[test]
+fn a_goal_that_is_resumed_goes_on_though_another_is_held_above_it() {
+    // A superior may take up its goals in another order than they were suspended in: a user has
+    // set one of them aside.
+    let mut child = entering();
+    child.instruct(suspend(1));
+    child.suspended(1, &ON_ARC5);
+    child.execute(2, "(approach n4 area1)", Some(&map_of("area1")));
+    child.instruct(suspend(2));
+    child.suspended(2, &ON_ARC5);
+    child.told();
+    assert_eq!(child.instruct(resume(1)), Answer::Accepted);
+    assert_eq!(child.running().as_deref(), Some("superior.1.1"));
+    assert_eq!(child.told(), ["resume #1"]);
+    assert_eq!(
+        child.stacked(),
+        ["superior.1.2"],
+        "and that one is still held"
+    );
+    child.success(1, &["(not (on arc5))", "(at n6)"]);
+    child.success(3, &["(not (at n6))", "(at n10)"]);
+    assert_eq!(child.running(), None);
+}
