@@ -23,9 +23,11 @@ use crate::wiring::{LinkError, Wiring};
 /// The world may be started after its robots.
 const PATIENCE_WITH_THE_WORLD: Duration = Duration::from_secs(60);
 
-/// What zenoh warns of comes back to us as an error, which we report in our own words; and it calls
-/// it an error when one answer was enough and a second one comes.
-const DEFAULT_FILTER: &str = "warn,zenoh=error,zenoh_config=error,zenoh::api::handlers=off";
+/// Our own warnings. What zenoh complains of comes back to us as an error, which we report in our
+/// own words; it also complains of every attempt to connect, and when one answer was enough and a
+/// second one comes. `RUST_LOG=warn` shows it all.
+const DEFAULT_FILTER: &str = "off,agent_core=warn,agent_link=warn,child_agent=warn,\
+    executor_sim=warn,intermezzo=warn,maps=warn,parent_agent=warn";
 
 /// Why a role could not start or could not go on.
 #[derive(Debug, thiserror::Error)]

@@ -89,14 +89,27 @@ pub async fn open(role: &Role, file: Option<&Path>) -> Result<Session, SessionEr
     }
 }
 
+/// Whether a zenoh configuration says where routers are.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn names_routers(file: &Path) -> Result<bool, SessionError> {
+    let config = read(file)?;
+    Ok(!is_default(&config, "connect/endpoints"))
+}
+
+fn read(path: &Path) -> Result<Config, SessionError> {
+    Config::from_file(path).map_err(|why| SessionError::ConfigFile {
+        path: path.display().to_string(),
+        why,
+    })
+}
+
 /// What zenoh is told.
 fn config(role: &Role, file: Option<&Path>) -> Result<Config, SessionError> {
     let mut config = match file {
         None => Config::default(),
-        Some(path) => Config::from_file(path).map_err(|why| SessionError::ConfigFile {
-            path: path.display().to_string(),
-            why,
-        })?,
+        Some(path) => read(path)?,
     };
     match role {
         Role::Router { listen } => {

@@ -23,7 +23,11 @@ impl Connection {
     pub(crate) async fn open(target: &Target) -> Result<Self, Failure> {
         let named = target.robot.as_deref();
         let file = target.zenoh_config.as_deref();
-        let (robot, connect) = if target.connect.is_empty() && file.is_none() {
+        let named_there = match file {
+            None => false,
+            Some(file) => session::names_routers(file).map_err(Failure::bad_input)?,
+        };
+        let (robot, connect) = if target.connect.is_empty() && !named_there {
             let running = Registry::of_user()
                 .and_then(|registry| registry.find(named))
                 .map_err(not_found)?;
@@ -39,8 +43,9 @@ impl Connection {
                 SessionError::ConfigFile { .. } | SessionError::Setting { .. } => {
                     Failure::bad_input(error)
                 }
-                _ => Failure::nobody_there(error)
-                    .advice("is the robot's router there, and may this machine reach it?"),
+                _ => Failure::nobody_there(error).advice(
+                    "is the robot's router there, and may this machine and this user reach it?",
+                ),
             })?;
         Ok(Self {
             client: Client::new(&session, &keys),
