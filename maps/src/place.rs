@@ -8,6 +8,16 @@ use agent_core::model::Map;
 use crate::vocabulary::missing_words;
 use crate::{Finding, Level, Site, area_level, area_maps, level_from_texts, museum, read_level};
 
+/// All that is wrong with a place, a finding a line.
+#[derive(Clone, Debug, Eq, PartialEq, thiserror::Error)]
+#[error("the place is not in order:\n{}", lines(.0))]
+pub struct NotInOrder(pub Vec<Finding>);
+
+fn lines(findings: &[Finding]) -> String {
+    let lines: Vec<String> = findings.iter().map(ToString::to_string).collect();
+    lines.join("\n")
+}
+
 /// A map and the domains of the two levels that plan on it.
 ///
 /// Invariant, kept by [`read`](Self::read): each domain has the words for what its level is told
@@ -38,6 +48,17 @@ impl Place {
             Site::read(dir.join("map.geojson")),
             ["area", "node"].map(|level| read_level(dir, level)),
             domains.each_ref().map(String::as_str),
+        )
+    }
+
+    /// The place in a folder, or the museum if none is named.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn open(dir: Option<&Path>) -> Result<Self, NotInOrder> {
+        dir.map_or_else(
+            || Ok(Self::museum()),
+            |dir| Self::read(dir).map_err(NotInOrder),
         )
     }
 

@@ -7,7 +7,7 @@ use agent_core::model::Symbol;
 use agent_link::options::{LinkOptions, PlaceOptions, PlannerOptions};
 use agent_link::{RoleError, Wiring, drive_agent_in_world};
 use clap::Args;
-use maps::Place;
+use maps::{NotInOrder, Place};
 
 use crate::SetupError;
 
@@ -31,9 +31,9 @@ pub struct ParentArgs {
 /// Why a parent could not start or could not go on.
 #[derive(Debug, thiserror::Error)]
 pub enum ProgramError {
-    /// The folder with map and domains; a finding a line.
-    #[error("the place is not in order:\n{0}")]
-    Place(String),
+    /// The folder with map and domains.
+    #[error(transparent)]
+    Place(#[from] NotInOrder),
     /// The arguments do not fit the place.
     #[error(transparent)]
     Setup(#[from] SetupError),
@@ -47,13 +47,7 @@ pub enum ProgramError {
 /// # Errors
 /// If it cannot start or cannot go on.
 pub async fn run(args: ParentArgs) -> Result<(), ProgramError> {
-    let place = match &args.place.place {
-        None => Place::museum(),
-        Some(dir) => Place::read(dir).map_err(|findings| {
-            let lines: Vec<String> = findings.iter().map(ToString::to_string).collect();
-            ProgramError::Place(lines.join("\n"))
-        })?,
-    };
+    let place = Place::open(args.place.place.as_deref())?;
     let keys = args.link.keys().map_err(RoleError::from)?;
     let wiring = Wiring::new(&keys, crate::NAME);
     let configuration = crate::configuration(

@@ -37,9 +37,9 @@ enum Part {
 /// Why a program could not start or could not go on.
 #[derive(Debug, thiserror::Error)]
 pub enum ProgramError {
-    /// The folder with map and domains; a finding a line.
-    #[error("the place is not in order:\n{0}")]
-    Place(String),
+    /// The folder with map and domains.
+    #[error(transparent)]
+    Place(#[from] maps::NotInOrder),
     /// A map on which no robot can move.
     #[error("cannot set up the floor: {0}")]
     Floor(#[from] FloorError),
@@ -67,13 +67,7 @@ pub async fn run(args: ExecutorArgs) -> Result<(), ProgramError> {
 
 /// The place, and the floor that it is to a robot.
 fn read(options: &PlaceOptions) -> Result<(maps::Place, Floor), ProgramError> {
-    let place = match &options.place {
-        None => maps::Place::museum(),
-        Some(dir) => maps::Place::read(dir).map_err(|findings| {
-            let lines: Vec<String> = findings.iter().map(ToString::to_string).collect();
-            ProgramError::Place(lines.join("\n"))
-        })?,
-    };
+    let place = maps::Place::open(options.place.as_deref())?;
     let floor = Floor::try_from(place.site())?;
     Ok((place, floor))
 }
