@@ -72,6 +72,10 @@ fn stack(museum: &Museum, dice: &mut Dice, seed: u64) -> Stack {
     stack
 }
 
+#[expect(
+    clippy::print_stdout,
+    reason = "whoever asks for one storm wants its story"
+)]
 fn storm(museum: &Museum, seed: u64) {
     let mut dice = Dice(seed);
     let mut stack = stack(museum, &mut dice, seed);

@@ -14,7 +14,7 @@ use super::{ON_ARC5, entering, map_of, on_the_way, parent};
 fn request(id: Option<&str>, tasks: &str, urgency: Urgency) -> GoalRequest {
     GoalRequest {
         id: id.map(Into::into),
-        tasks: agent_core::language::parse_tasks(tasks).unwrap(),
+        tasks: agent_core::language::parse_tasks(tasks).expect("a test writes its tasks in HDDL"),
         urgency,
         priority: 0,
         deadline: None,
