@@ -1,7 +1,7 @@
 //! What an agent shows of itself, at whatever level it is.
 
 use agent_core::agent::{Agent, Goal, Intention, ResumedBy, WaitsFor};
-use agent_core::model::Atom;
+use agent_core::model::{Atom, Domain};
 use agent_core::planner::{Plan, Planner};
 use agent_core::protocol::Urgency;
 use serde_json::{Value, json};
@@ -48,6 +48,8 @@ impl<P: Planner> Inspect for Agent<P> {
             "values": values
                 .map(|(function, value)| format!("(= {function} {value})"))
                 .collect::<Vec<_>>(),
+            // What facts and values can be about, with the number of their arguments.
+            "words": words(self.domain()),
         })
     }
 
@@ -116,4 +118,10 @@ fn plans(intention: &Intention) -> Value {
 
 fn texts<'a>(atoms: impl IntoIterator<Item = &'a Atom>) -> Vec<String> {
     atoms.into_iter().map(ToString::to_string).collect()
+}
+
+fn words(domain: &Domain) -> Value {
+    let words = domain.predicates.iter().chain(&domain.functions);
+    let words = words.map(|(name, parameters)| (name.to_string(), json!(parameters.len())));
+    Value::Object(words.collect())
 }

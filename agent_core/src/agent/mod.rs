@@ -30,7 +30,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use crate::model::{Belief, FactChange, Map, Symbol, Task, Time};
+use crate::model::{Belief, Domain, FactChange, Map, Symbol, Task, Time};
 use crate::planner::{Planner, Step};
 use crate::protocol::{ActionId, GoalId, Happening, Input, Machine, Output, Reply, Report};
 
@@ -147,6 +147,11 @@ impl<P: Planner> Agent<P> {
     /// Its name.
     pub fn name(&self) -> &Symbol {
         &self.configuration.name
+    }
+
+    /// The domain of its level.
+    pub fn domain(&self) -> &Domain {
+        &self.configuration.domain
     }
 
     /// What it holds to be true.

@@ -1,8 +1,11 @@
 //! `suspend`, `resume`, `cancel`, `fact` and `door`.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use agent_core::language::{nearest, parse_fact_change};
+use agent_core::model::FactChange;
 use agent_core::protocol::Command;
-use agent_link::View;
+use agent_link::{Client, View};
 use executor_sim::program::WORLD;
 use serde_json::{Value, json};
 
@@ -38,8 +41,13 @@ pub(crate) async fn fact(args: FactArgs) -> Result<Exit, Failure> {
             .advice("for example: intermezzo fact '(not (open door3_5))'")
     })?;
     let connection = Connection::open(&args.target).await?;
-    let verdict = connection.client.facts(&fact.to_string()).await;
-    let verdict = connection.close(verdict.map_err(unanswered)).await?;
+    let told = async {
+        let client = &connection.client;
+        somebody_understands(client, &fact).await?;
+        client.facts(&fact.to_string()).await.map_err(unanswered)
+    }
+    .await;
+    let verdict = connection.close(told).await?;
     Ok(tell(
         json!(verdict),
         verdict.accepted,
@@ -47,6 +55,41 @@ pub(crate) async fn fact(args: FactArgs) -> Result<Exit, Failure> {
         &format!("told that {fact}"),
         args.json,
     ))
+}
+
+/// Refuses a fact that is in the words of no agent: nobody would take any notice of it.
+async fn somebody_understands(client: &Client, fact: &FactChange) -> Result<(), Failure> {
+    let (FactChange::Add(atom) | FactChange::Remove(atom) | FactChange::Set(atom, _)) = fact;
+    let mut words: BTreeMap<String, BTreeSet<u64>> = BTreeMap::new();
+    for (agent, _) in client.alive().await.map_err(unanswered)? {
+        let belief = client
+            .look(&agent, View::Belief)
+            .await
+            .map_err(unanswered)?;
+        for (word, arguments) in belief["words"].as_object().into_iter().flatten() {
+            let known = words.entry(word.clone()).or_default();
+            known.extend(arguments.as_u64());
+        }
+    }
+    let Some(arguments) = words.get(atom.name.as_str()) else {
+        let message = format!("no agent of this robot knows what `{}` means", atom.name);
+        let failure = Failure::bad_input(message);
+        let near = nearest(atom.name.as_str(), words.keys().map(String::as_str));
+        return Err(match near {
+            Some(near) => failure.advice(format_args!("did you mean `{near}`?")),
+            None => failure,
+        });
+    };
+    if arguments.contains(&(atom.args.len() as u64)) {
+        return Ok(());
+    }
+    let wanted: Vec<String> = arguments.iter().map(u64::to_string).collect();
+    Err(Failure::bad_input(format_args!(
+        "`{}` takes {} argument(s), not {}",
+        atom.name,
+        wanted.join(" or "),
+        atom.args.len()
+    )))
 }
 
 /// Opens or closes a door.

@@ -38,6 +38,16 @@ async fn nonsense_is_refused_in_words_and_disturbs_nothing() {
         assert!(said.err.contains(words), "{task}: {said:?}");
     }
 
+    for (fact, words) in [
+        ("(opne door3_5)", "did you mean `open`"),
+        ("(open door3_5 door3_4)", "`open` takes 1 argument"),
+    ] {
+        let said = user.run(&["fact", fact]).await;
+        assert_eq!(said.code, Some(2), "{fact}: {said:?}");
+        assert!(said.err.contains(words), "{fact}: {said:?}");
+    }
+    user.ok(&["fact", "(not (open door5_7))"]).await;
+
     let keys = Keys::new("robot").unwrap();
     let connect = vec![up.endpoint.clone()];
     let session = session::open(&Role::Client { connect }, None)
