@@ -3,6 +3,7 @@
 //! Each *wait till* of the paper is a state here, and its second thread is only another input. One
 //! goal runs at a time. The same machine serves at every level.
 
+mod accept;
 mod aside;
 mod check;
 mod command;

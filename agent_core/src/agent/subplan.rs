@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::{Agent, ResumedBy};
-use crate::model::{FactChange, Map, Symbol};
+use super::{Agent, Goal, Intention, ResumedBy};
+use crate::model::{FactChange, Map, Symbol, Task};
 use crate::planner::Planner;
-use crate::protocol::{ActionId, Answer, Happening, Instruction, Output, Report};
+use crate::protocol::{ActionId, Answer, Happening, Instruction, Output, Report, Urgency};
 
 impl<P: Planner> Agent<P> {
     /// Step 1, and what else a superior may instruct.
@@ -38,6 +38,30 @@ impl<P: Planner> Agent<P> {
             Instruction::Resume { id, map } => self.resume_for(from, &id, map),
             Instruction::Clear { id } => self.clear_for(from, &id),
         }
+    }
+
+    /// A superior's `Execute`: begins at once, even above a goal that the superior holds suspended
+    /// here. Read literally, the paper makes it wait for an empty stack (step 4.3), which only the
+    /// superior can empty, later (decision 1).
+    ///
+    /// So it is of the emergencies' kind: it outranks whatever runs when it comes, and an emergency
+    /// of the agent's own that comes later outranks it.
+    pub(super) fn begin_instruction(&mut self, from: &Symbol, id: ActionId, task: Task) {
+        let number = self.next_goal;
+        self.next_goal += 1;
+        let running = self.running.as_ref().map(|running| &running.intention.goal);
+        let emergency = running.filter(|goal| goal.urgency == Urgency::Emergency);
+        let goal = Goal {
+            id: id.to_string().into(),
+            tasks: vec![task],
+            urgency: Urgency::Emergency,
+            priority: emergency.map_or(i32::MIN, |goal| goal.priority),
+            deadline: None,
+            number,
+            superior: Some((from.clone(), id)),
+            map: Arc::clone(&self.map),
+        };
+        self.waiting.add(Intention::new(goal));
     }
 
     /// Whether a superior's instruction is known and not over.

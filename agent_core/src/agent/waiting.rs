@@ -1,8 +1,8 @@
-//! The waiting goal list (Algorithm 4), and emergencies whose turn has not come.
+//! Algorithm 4: the waiting goal list, emergencies whose turn has not come, and which goal is next.
 
-use super::goal::Goal;
-use super::intention::Intention;
-use crate::protocol::{GoalId, Urgency};
+use super::{Agent, Goal, Intention, Phase, Running};
+use crate::planner::Planner;
+use crate::protocol::{GoalId, Happening, Urgency};
 
 /// Goals that are neither running nor suspended nor set aside.
 ///
@@ -50,6 +50,52 @@ impl WaitingGoals {
 
     pub(super) fn intentions_mut(&mut self) -> impl Iterator<Item = &mut Intention> {
         self.goals.iter_mut()
+    }
+}
+
+impl<P: Planner> Agent<P> {
+    /// Starts or resumes the goal that goes first, if nothing runs. Returns whether it did.
+    pub(super) fn start_next(&mut self) -> bool {
+        if self.running.is_some() {
+            return false;
+        }
+        let resumable = self.stack.resumable().map(|intention| &intention.goal);
+        let urgent = self.waiting.most_urgent();
+        let urgent = urgent.filter(|urgent| resumable.is_none_or(|top| urgent.outranks(top)));
+        let normal = self.waiting.next_normal();
+        let next = if let Some(urgent) = urgent {
+            // Algorithm 3, step 2 or 3e; Algorithm 5.
+            self.waiting.remove(&urgent.id.clone())
+        } else if resumable.is_some() {
+            // Algorithm 3, steps 3f and 3g.
+            self.stack.pop()
+        } else if self.stack.depth() == 0
+            && let Some(normal) = normal
+        {
+            // Algorithm 4, steps 3 to 5.
+            self.waiting.remove(&normal.id.clone())
+        } else {
+            None
+        };
+        let Some(mut intention) = next else {
+            return false;
+        };
+        let resumed = std::mem::replace(&mut intention.started, true);
+        let goal = intention.goal.id.clone();
+        self.map = intention.goal.map.clone();
+        self.running = Some(Running {
+            intention,
+            phase: Phase::Planning,
+            resumed,
+            set_aside: false,
+            broken: None,
+            surprised: true,
+        });
+        if !resumed {
+            self.emit(Some(&goal), Happening::GoalStarted);
+        }
+        self.plan();
+        true
     }
 }
 
