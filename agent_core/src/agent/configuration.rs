@@ -75,7 +75,7 @@ impl Default for Policy {
     fn default() -> Self {
         Self {
             keep_what_helps: true,
-            // The naive planner expands some hundred thousand nodes a second: about 2 ms.
+            // The museum's rough plans were seen to take from 19 to 155, alternatives included.
             expansions_before_stopping: 200,
             expansions_per_slice: 200,
             attempts: 3,
