@@ -7,7 +7,7 @@ use agent_core::language::{
     parse_parameter, parse_pattern,
 };
 use agent_core::model::{
-    ActionModel, CostRule, Domain, ExecutionModel, Literal, Number, Parameter, Pattern, Projection,
+    ActionModel, Clause, CostRule, Domain, ExecutionModel, Number, Parameter, Pattern, Projection,
     Suspension, Symbol, TaskModel,
 };
 use serde::Deserialize;
@@ -370,7 +370,7 @@ impl Reader<'_> {
         out
     }
 
-    fn literals(&mut self, key: &str, texts: &[Text], parameters: &[Parameter]) -> Vec<Literal> {
+    fn literals(&mut self, key: &str, texts: &[Text], parameters: &[Parameter]) -> Vec<Clause> {
         texts
             .iter()
             .filter_map(|text| self.read(key, text, parse_literal(text.get_ref(), parameters)))

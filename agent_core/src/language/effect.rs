@@ -7,7 +7,7 @@ use super::expression::{NOT_YET, Scope, not_yet};
 use super::fit::Sort;
 use super::tree::Tree;
 use super::typed_list::parameters;
-use crate::model::{Effect, Number, Parameter, Pattern, Term};
+use crate::model::{Change, Effect, Number, Parameter, Pattern, Term};
 
 /// An effect as written: facts, and perhaps a cost.
 #[derive(Default)]
@@ -26,7 +26,10 @@ impl CostedEffect {
                     self.read(item, scope, faults);
                 }
             }
-            (Some("not"), _) => self.effect.remove.extend(removed(tree, scope, faults)),
+            (Some("not"), _) => self
+                .effect
+                .remove
+                .extend(removed(tree, scope, faults).map(Change::from)),
             (Some("forall"), _) => self.effect.remove.extend(quantified(tree, scope, faults)),
             (Some("increase"), Some(items)) => self.increase(tree, &items[1..], scope, faults),
             (Some(head), _) if head == "=" || NOT_YET.contains(&head) => {
@@ -34,7 +37,7 @@ impl CostedEffect {
             }
             _ => {
                 let added = scope.pattern(tree, Sort::Predicate, faults);
-                self.effect.add.extend(added);
+                self.effect.add.extend(added.map(Change::from));
             }
         }
     }
@@ -81,7 +84,7 @@ fn removed(tree: &Tree, scope: &Scope<'_>, faults: &mut Faults) -> Option<Patter
 }
 
 /// The pattern in `(forall (?x - node) (not (at ?x)))`, with `?x` beyond the scope's parameters.
-fn quantified(tree: &Tree, scope: &Scope<'_>, faults: &mut Faults) -> Option<Pattern> {
+fn quantified(tree: &Tree, scope: &Scope<'_>, faults: &mut Faults) -> Option<Change> {
     let Some([_, variables, body]) = tree.list() else {
         faults.add(
             tree.at,
@@ -124,7 +127,11 @@ fn quantified(tree: &Tree, scope: &Scope<'_>, faults: &mut Faults) -> Option<Pat
             not_yet(tree, "forall with one variable in two places", faults);
         }
     }
-    Some(pattern)
+    Some(Change {
+        over: all.split_off(scope.parameters.len()),
+        when: Vec::new(),
+        fact: pattern,
+    })
 }
 
 /// A quantified variable ranges over everything that can stand in its place. One of a narrower

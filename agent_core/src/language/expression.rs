@@ -5,7 +5,7 @@ use super::fit::{Closeness, Sort, misfits, no_constant};
 use super::near::hint;
 use super::tree::{Kind, Tree};
 use super::typed_list::name;
-use crate::model::{Condition, Domain, Literal, Number, Parameter, Pattern, Symbol, Term};
+use crate::model::{Clause, Condition, Domain, Number, Parameter, Pattern, Symbol, Term};
 
 /// What the names in an expression may refer to.
 #[derive(Clone, Copy)]
@@ -107,7 +107,7 @@ impl Scope<'_> {
     }
 
     /// A fact, an equality, or one of them negated.
-    pub(super) fn literal(&self, tree: &Tree, faults: &mut Faults) -> Option<Literal> {
+    pub(super) fn literal(&self, tree: &Tree, faults: &mut Faults) -> Option<Clause> {
         let Some("not") = tree.head() else {
             return self.positive(tree, true, faults);
         };
@@ -125,7 +125,7 @@ impl Scope<'_> {
         }
     }
 
-    fn positive(&self, tree: &Tree, holds: bool, faults: &mut Faults) -> Option<Literal> {
+    fn positive(&self, tree: &Tree, holds: bool, faults: &mut Faults) -> Option<Clause> {
         match (tree.head(), tree.list()) {
             (Some("="), Some([_, left, right])) => {
                 if [left, right].iter().any(|side| side.list().is_some()) {
@@ -134,7 +134,7 @@ impl Scope<'_> {
                 }
                 let left = self.known_term(left, faults);
                 let right = self.known_term(right, faults);
-                Some(Literal::Equal(holds, left?, right?))
+                Some(Clause::Equal(holds, left?, right?))
             }
             (Some("="), _) => {
                 faults.add(tree.at, "`=` takes two arguments: `(= ?x ?y)`");
@@ -146,7 +146,7 @@ impl Scope<'_> {
             }
             _ => {
                 let pattern = self.pattern(tree, Sort::Predicate, faults)?;
-                Some(Literal::Fact(holds, pattern))
+                Some(Clause::Fact(holds, pattern))
             }
         }
     }

@@ -6,7 +6,7 @@ use super::expression::{Scope, decimal, object};
 use super::fit::Sort;
 use super::tree::{self, Tree};
 use super::typed_list::{name, parameters};
-use crate::model::{Atom, Domain, Effect, FactChange, Literal, Number, Parameter, Pattern, Task};
+use crate::model::{Atom, Clause, Domain, Effect, FactChange, Number, Parameter, Pattern, Task};
 
 /// Reads one atom without variables: `(at n1)`.
 ///
@@ -75,7 +75,7 @@ pub fn parse_pattern(text: &str, parameters: &[Parameter]) -> Result<Pattern, La
 }
 
 /// Reads one condition: `(open ?d)`, `(not (at ?n))`, `(= ?x ?y)` or `(not (= ?x ?y))`.
-pub fn parse_literal(text: &str, parameters: &[Parameter]) -> Result<Literal, LanguageError> {
+pub fn parse_literal(text: &str, parameters: &[Parameter]) -> Result<Clause, LanguageError> {
     let scope = undeclared(parameters);
     one(text, |tree, faults| {
         if tree.head() == Some("and") {

@@ -5,7 +5,7 @@ use super::expression::{Scope, not_yet};
 use super::fields::{Fields, read_parameters, read_precondition};
 use super::fit::Sort;
 use super::subtasks::subtasks;
-use crate::model::{Domain, Literal, Method, Symbol};
+use crate::model::{Clause, Domain, Method, Symbol};
 
 /// What may stand in a method.
 pub(super) const KEYWORDS: &[&str] = &[
@@ -49,8 +49,8 @@ pub(super) fn method(
     if let Some((_, tree)) = fields.get(":constraints") {
         for literal in scope.condition(tree, faults) {
             match literal {
-                Literal::Equal(..) => precondition.push(literal),
-                Literal::Fact(..) => not_yet(tree, "a constraint that is no equality", faults),
+                Clause::Equal(..) => precondition.push(literal),
+                _ => not_yet(tree, "a constraint that is no equality", faults),
             }
         }
     }

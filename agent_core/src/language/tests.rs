@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use super::*;
-use crate::model::{Domain, Effect, FactChange, Literal, Number, Parameter, Pattern, Symbol, Term};
+use crate::model::{Change, Clause, Domain, Effect, FactChange, Number, Parameter, Pattern, Symbol, Term};
 
 pub(super) const AREA: &str = include_str!("../../../maps/museum/area.hddl");
 pub(super) const NODE: &str = include_str!("../../../maps/museum/node.hddl");
@@ -72,9 +72,9 @@ fn a_domain_is_read_as_it_is_written() {
     assert_eq!(
         method.precondition,
         [
-            Literal::Fact(true, pattern("at", &[1])),
-            Literal::Fact(true, pattern("joins", &[1, 2, 3])),
-            Literal::Equal(false, Term::Variable(1), Term::Variable(0)),
+            Clause::Fact(true, pattern("at", &[1])),
+            Clause::Fact(true, pattern("joins", &[1, 2, 3])),
+            Clause::Equal(false, Term::Variable(1), Term::Variable(0)),
         ]
     );
     assert_eq!(
@@ -82,8 +82,8 @@ fn a_domain_is_read_as_it_is_written() {
         [pattern("pass", &[1, 2, 3]), pattern("go", &[0])]
     );
     let pass = &domain.operators["pass"];
-    assert_eq!(pass.effect.remove, [pattern("at", &[0])]);
-    assert_eq!(pass.effect.add, [pattern("at", &[1])]);
+    assert_eq!(pass.effect.remove, [pattern("at", &[0]).into()]);
+    assert_eq!(pass.effect.add, [pattern("at", &[1]).into()]);
     assert_eq!(pass.cost, Number::Function(pattern("length", &[2])));
 }
 
@@ -94,7 +94,7 @@ fn both_levels_of_the_museum_are_read() {
     assert_eq!(area.operators.len(), 10);
     // The quantified variable stands beyond the three parameters.
     assert_eq!(
-        area.operators["enter"].effect.remove[0],
+        area.operators["enter"].effect.remove[0].fact,
         pattern("at", &[3])
     );
     let node = parse_domain(NODE).unwrap();
@@ -416,7 +416,7 @@ fn pieces_of_an_execution_model_are_read_with_the_variables_of_their_action() {
     );
     assert_eq!(
         parse_literal("(not (= ?a ?b))", &parameters).unwrap(),
-        Literal::Equal(false, Term::Variable(0), Term::Variable(1))
+        Clause::Equal(false, Term::Variable(0), Term::Variable(1))
     );
     let texts = [
         "(at ?b)",
@@ -426,8 +426,18 @@ fn pieces_of_an_execution_model_are_read_with_the_variables_of_their_action() {
     assert_eq!(
         parse_effects(&texts, &parameters, &small()).unwrap(),
         Effect {
-            remove: vec![pattern("at", &[0]), pattern("at", &[2])],
-            add: vec![pattern("at", &[1])],
+            remove: vec![
+                pattern("at", &[0]).into(),
+                Change {
+                    over: vec![Parameter {
+                        name: Symbol::from("?x"),
+                        kind: Symbol::from("place"),
+                    }],
+                    when: Vec::new(),
+                    fact: pattern("at", &[2]),
+                },
+            ],
+            add: vec![pattern("at", &[1]).into()],
         }
     );
     let wrong = parse_pattern("(resume-pass ?bb)", &parameters).unwrap_err();

@@ -14,6 +14,9 @@ pub struct Domain {
     pub name: Symbol,
     /// Type and its supertype; `object` stands above all and is not listed.
     pub types: BTreeMap<Symbol, Symbol>,
+    /// `(either a b)`, written out as its name, and the types that are joined in it. Such a name
+    /// stands where a type can; it has blanks, so that it is nobody else's.
+    pub unions: BTreeMap<Symbol, Vec<Symbol>>,
     /// Objects that every problem has, and their types.
     pub constants: BTreeMap<Symbol, Symbol>,
     /// Predicate and its parameters.
@@ -69,6 +72,16 @@ impl Domain {
     pub fn is_a(&self, kind: &Symbol, wanted: &Symbol) -> bool {
         if wanted == "object" {
             return true;
+        }
+        if let Some(members) = self.unions.get(wanted) {
+            return match self.unions.get(kind) {
+                // A union is within another if each of its members is.
+                Some(given) => given.iter().all(|kind| self.is_a(kind, wanted)),
+                None => members.iter().any(|member| self.is_a(kind, member)),
+            };
+        }
+        if let Some(given) = self.unions.get(kind) {
+            return given.iter().all(|kind| self.is_a(kind, wanted));
         }
         // Bounded by the number of types: a cycle of supertypes ends here too.
         let mut kind = kind;

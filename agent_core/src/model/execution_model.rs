@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Condition, Effect, Literal, Number, Parameter, Pattern, Symbol};
+use super::{Clause, Condition, Effect, Number, Parameter, Pattern, Symbol};
 
 /// The side file of a domain, by name of action and task.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,7 +32,7 @@ pub struct ActionModel {
     /// to do it has done it for every suspended plan that begins with it.
     pub achieves_state: bool,
     /// What must hold as long as it runs.
-    pub protected: Vec<Literal>,
+    pub protected: Vec<Clause>,
     /// How it is suspended. `None`: it cannot be, and runs to its end.
     pub suspension: Option<Suspension>,
     /// What the robot is to do, in the executor's own words: `(drive ?arc ?to)`. Only for actions

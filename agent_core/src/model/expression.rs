@@ -56,28 +56,81 @@ pub struct Parameter {
     pub kind: Symbol,
 }
 
-/// One condition.
+/// One part of a condition, in negation normal form: `imply`, and `not` of anything larger than a
+/// fact, are written by the others.
 #[derive(Clone, Debug, Eq, PartialEq)]
-pub enum Literal {
+pub enum Clause {
     /// The fact holds (`true`) or does not.
     Fact(bool, Pattern),
     /// Both are the same object (`true`) or are not.
     Equal(bool, Term, Term),
+    /// `or`: at least one of these holds.
+    Any(Vec<Condition>),
+    /// `forall`: for all objects of their types in the place of the variables, this holds.
+    Every(Vec<Parameter>, Condition),
+    /// `exists`: for some objects of their types in the place of the variables, this holds.
+    Exists(Vec<Parameter>, Condition),
+}
+
+impl Clause {
+    /// Calls `found` with every pattern of a fact in it.
+    pub fn each_pattern(&self, found: &mut dyn FnMut(&Pattern)) {
+        match self {
+            Self::Fact(_, pattern) => found(pattern),
+            Self::Equal(..) => {}
+            Self::Any(choices) => {
+                for clause in choices.iter().flatten() {
+                    clause.each_pattern(found);
+                }
+            }
+            Self::Every(_, inner) | Self::Exists(_, inner) => {
+                for clause in inner {
+                    clause.each_pattern(found);
+                }
+            }
+        }
+    }
 }
 
 /// All of these hold. Empty: always true.
-pub type Condition = Vec<Literal>;
+///
+/// Variables that a clause introduces are numbered on from those that are in scope where it stands:
+/// with three parameters, the first variable of a `forall` is number 3, and number 4 is the
+/// second, or the first of another `forall` within it.
+pub type Condition = Vec<Clause>;
 
 /// What an action makes true or false.
 ///
 /// Everything that is removed is removed before anything is added, as PDDL has it.
 #[derive(Clone, Debug, Default, Eq, PartialEq)]
 pub struct Effect {
-    /// Facts that no longer hold. A variable whose index is not among the action's parameters
-    /// ranges over all objects: `(forall (?x - node) (not (at ?x)))`.
-    pub remove: Vec<Pattern>,
+    /// Facts that no longer hold.
+    pub remove: Vec<Change>,
     /// Facts that hold from then on.
-    pub add: Vec<Pattern>,
+    pub add: Vec<Change>,
+}
+
+/// Facts that an action adds or removes: `(forall (?x - node) (when (near ?x) (seen ?x)))`.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Change {
+    /// `forall`: variables that range over all objects of their types, numbered on from the
+    /// action's parameters. Mostly there are none.
+    pub over: Vec<Parameter>,
+    /// `when`: what must hold in the state in which the action begins. Mostly nothing.
+    pub when: Condition,
+    /// The fact.
+    pub fact: Pattern,
+}
+
+impl From<Pattern> for Change {
+    /// One fact, in any case.
+    fn from(fact: Pattern) -> Self {
+        Self {
+            over: Vec::new(),
+            when: Condition::new(),
+            fact,
+        }
+    }
 }
 
 /// A number that may depend on functions: `(/ (length ?arc) 0.8)`.

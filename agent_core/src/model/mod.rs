@@ -5,6 +5,7 @@ mod belief;
 mod domain;
 mod execution_model;
 mod expression;
+mod instance;
 mod map;
 mod quantity;
 mod symbol;
@@ -15,7 +16,8 @@ pub use domain::{Domain, Method, Operator};
 pub use execution_model::{
     ActionModel, CostRule, ExecutionModel, Projection, Suspension, TaskModel,
 };
-pub use expression::{Condition, Effect, Literal, Number, Parameter, Pattern, Term};
+pub use expression::{Change, Clause, Condition, Effect, Number, Parameter, Pattern, Term};
+pub use instance::Instance;
 pub use map::Map;
 pub use quantity::{Cost, Time};
 pub use symbol::Symbol;

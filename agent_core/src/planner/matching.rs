@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::state::{Bindings, View};
-use crate::model::{Fact, Literal, Parameter, Pattern, Term};
+use crate::model::{Clause, Condition, Fact, Parameter, Pattern, Term};
 
 /// Calls `found` with every binding of `parameters` that makes `condition` hold, beginning with
 /// `bindings`.
@@ -13,7 +13,7 @@ use crate::model::{Fact, Literal, Parameter, Pattern, Term};
 pub(super) fn for_each_binding(
     view: View<'_>,
     parameters: &[Parameter],
-    condition: &[Literal],
+    condition: &[Clause],
     bindings: Bindings,
     wanted: &mut BTreeSet<Fact>,
     found: &mut dyn FnMut(&Bindings),
@@ -24,7 +24,7 @@ pub(super) fn for_each_binding(
         wanted,
         found,
     };
-    let open: Vec<&Literal> = condition.iter().collect();
+    let open: Vec<&Clause> = condition.iter().collect();
     query.solve(&open, bindings);
 }
 
@@ -36,7 +36,7 @@ struct Query<'a, 'b> {
 }
 
 impl Query<'_, '_> {
-    fn solve(&mut self, open: &[&Literal], mut bindings: Bindings) {
+    fn solve(&mut self, open: &[&Clause], mut bindings: Bindings) {
         // First whatever can be decided now, as it costs least and prunes most.
         let mut undecided = Vec::with_capacity(open.len());
         for literal in open {
@@ -49,9 +49,9 @@ impl Query<'_, '_> {
         // Then bind by a fact that must hold, …
         let binder = undecided
             .iter()
-            .position(|literal| matches!(literal, Literal::Fact(true, _)));
+            .position(|literal| matches!(literal, Clause::Fact(true, _)));
         if let Some(binder) = binder
-            && let Literal::Fact(_, pattern) = undecided.remove(binder)
+            && let Clause::Fact(_, pattern) = undecided.remove(binder)
         {
             for fact in self.view.matching(pattern, &bindings) {
                 if let Some(bindings) = self.unify(pattern, &fact, &bindings) {
@@ -72,12 +72,12 @@ impl Query<'_, '_> {
     }
 
     /// Whether a literal holds, if its variables are bound.
-    fn decide(&mut self, literal: &Literal, bindings: &Bindings) -> Option<bool> {
+    fn decide(&mut self, literal: &Clause, bindings: &Bindings) -> Option<bool> {
         match literal {
-            Literal::Equal(wanted, a, b) => {
+            Clause::Equal(wanted, a, b) => {
                 Some((a.bound(bindings)? == b.bound(bindings)?) == *wanted)
             }
-            Literal::Fact(wanted, pattern) => {
+            Clause::Fact(wanted, pattern) => {
                 let fact = pattern.ground(bindings)?;
                 let holds = self.view.holds(&fact) == *wanted;
                 if !holds && self.view.problem.model.observable.contains(&fact.name) {
@@ -85,7 +85,56 @@ impl Query<'_, '_> {
                 }
                 Some(holds)
             }
+            _ if bindings.iter().any(Option::is_none) => None,
+            Clause::Any(choices) => Some(
+                choices
+                    .iter()
+                    .any(|choice| self.some(&[], choice, bindings)),
+            ),
+            Clause::Exists(variables, inner) => Some(self.some(variables, inner, bindings)),
+            Clause::Every(variables, inner) => Some(self.every(variables, inner, bindings)),
         }
+    }
+
+    /// Whether `condition` holds for some objects in the place of `variables`.
+    fn some(&mut self, variables: &[Parameter], condition: &Condition, outer: &Bindings) -> bool {
+        let parameters = [self.parameters, variables].concat();
+        let mut bindings = outer.clone();
+        bindings.resize(parameters.len(), None);
+        let mut holds = false;
+        for_each_binding(
+            self.view,
+            &parameters,
+            condition,
+            bindings,
+            self.wanted,
+            &mut |_| holds = true,
+        );
+        holds
+    }
+
+    /// Whether `condition` holds for all objects in the place of `variables`.
+    fn every(&mut self, variables: &[Parameter], condition: &Condition, outer: &Bindings) -> bool {
+        let parameters = [self.parameters, variables].concat();
+        let mut all = Vec::new();
+        let mut bindings = outer.clone();
+        bindings.resize(parameters.len(), None);
+        for_each_binding(
+            self.view,
+            &parameters,
+            &[],
+            bindings,
+            self.wanted,
+            &mut |bindings| all.push(bindings.clone()),
+        );
+        let mut inner = Query {
+            view: self.view,
+            parameters: &parameters,
+            wanted: &mut *self.wanted,
+            found: &mut |_| {},
+        };
+        all.iter()
+            .all(|bindings| inner.some(&[], condition, bindings))
     }
 
     /// `bindings` with those that make `pattern` the `fact`, if types allow.

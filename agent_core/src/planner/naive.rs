@@ -10,7 +10,7 @@ use super::network::TaskList;
 use super::plan::{Agenda, Plan, Step};
 use super::state::Delta;
 use super::{Depth, Outcome, Planner, Problem, Settings};
-use crate::model::{Cost, Fact, Literal, Symbol};
+use crate::model::{Cost, Fact, Symbol};
 
 /// After the best plan is found, alternatives are looked for with at most this many expansions,
 /// or twice as many as the best plan took.
@@ -95,13 +95,14 @@ impl Search {
     fn new(problem: Problem, agendas: &[Agenda]) -> Self {
         let methods = problem.domain.methods.iter().map(|m| &m.precondition);
         let operators = problem.domain.operators.values().map(|o| &o.precondition);
-        let literals = methods.chain(operators).flatten();
-        let decisive = literals.filter_map(|literal| match literal {
-            Literal::Fact(_, pattern) => Some(pattern.name.clone()),
-            Literal::Equal(..) => None,
-        });
+        let mut decisive = BTreeSet::new();
+        for clause in methods.chain(operators).flatten() {
+            clause.each_pattern(&mut |pattern| {
+                decisive.insert(pattern.name.clone());
+            });
+        }
         let mut search = Self {
-            decisive: decisive.collect(),
+            decisive,
             problem,
             nodes: Vec::new(),
             frontier: BinaryHeap::new(),

@@ -1,9 +1,10 @@
 //! The world as it would be after some actions.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Problem;
-use crate::model::{Belief, Effect, Fact, Literal, Number, Parameter, Pattern, Symbol};
+use super::matching::for_each_binding;
+use crate::model::{Belief, Change, Clause, Effect, Fact, Number, Parameter, Pattern, Symbol};
 
 /// What is different from the belief.
 ///
@@ -100,18 +101,56 @@ impl<'a> View<'a> {
     /// The state after an effect, as a new delta.
     pub fn after(&self, effect: &Effect, bindings: &[Option<Symbol>]) -> Delta {
         let mut delta = self.delta.clone();
-        for pattern in &effect.remove {
-            // A quantified variable is bound to nothing and so matches everything.
-            for fact in self.matching(pattern, bindings) {
-                self.set(&mut delta, fact, false);
-            }
-        }
-        for pattern in &effect.add {
-            if let Some(fact) = pattern.ground(bindings) {
-                self.set(&mut delta, fact, true);
+        for (changes, holds) in [(&effect.remove, false), (&effect.add, true)] {
+            for change in changes {
+                self.each_fact(change, holds, bindings, &mut |fact| {
+                    self.set(&mut delta, fact, holds);
+                });
             }
         }
         delta
+    }
+
+    /// The facts that a change is about in this state.
+    fn each_fact(
+        &self,
+        change: &Change,
+        holds: bool,
+        bindings: &[Option<Symbol>],
+        found: &mut dyn FnMut(Fact),
+    ) {
+        if change.over.is_empty() && change.when.is_empty() {
+            change.fact.ground(bindings).into_iter().for_each(found);
+            return;
+        }
+        // Only what holds needs to be removed, which binds the variables faster than their types.
+        let mut when = change.when.clone();
+        if !holds {
+            when.insert(0, Clause::Fact(true, change.fact.clone()));
+        }
+        // The types of what is bound already are not asked for.
+        let any = |_: &Option<Symbol>| Parameter {
+            name: Symbol::from(""),
+            kind: Symbol::from("object"),
+        };
+        let mut parameters: Vec<Parameter> = bindings.iter().map(any).collect();
+        parameters.extend(change.over.iter().cloned());
+        let mut all = bindings.to_vec();
+        all.resize(parameters.len(), None);
+        for_each_binding(
+            *self,
+            &parameters,
+            &when,
+            all,
+            &mut BTreeSet::new(),
+            &mut |bindings| {
+                change
+                    .fact
+                    .ground(bindings)
+                    .into_iter()
+                    .for_each(&mut *found)
+            },
+        );
     }
 
     /// Makes a fact hold or not in `delta`.
@@ -125,10 +164,10 @@ impl<'a> View<'a> {
 
     /// Whether a condition with all its variables bound holds; else, in words, the first part that
     /// does not.
-    pub fn check(&self, condition: &[Literal], bindings: &[Option<Symbol>]) -> Result<(), String> {
-        for literal in condition {
-            match literal {
-                Literal::Fact(wanted, pattern) => {
+    pub fn check(&self, condition: &[Clause], bindings: &[Option<Symbol>]) -> Result<(), String> {
+        for clause in condition {
+            match clause {
+                Clause::Fact(wanted, pattern) => {
                     let Some(fact) = pattern.ground(bindings) else {
                         continue;
                     };
@@ -137,9 +176,23 @@ impl<'a> View<'a> {
                         return Err(format!("{fact}{not}"));
                     }
                 }
-                Literal::Equal(wanted, a, b) => {
+                Clause::Equal(wanted, a, b) => {
                     if (a.bound(bindings) == b.bound(bindings)) != *wanted {
                         return Err(String::from("its arguments do not differ as they must"));
+                    }
+                }
+                Clause::Any(_) | Clause::Every(..) | Clause::Exists(..) => {
+                    let mut holds = false;
+                    for_each_binding(
+                        *self,
+                        &[],
+                        std::slice::from_ref(clause),
+                        bindings.to_vec(),
+                        &mut BTreeSet::new(),
+                        &mut |_| holds = true,
+                    );
+                    if !holds {
+                        return Err(String::from("its condition does not hold"));
                     }
                 }
             }

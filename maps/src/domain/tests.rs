@@ -68,7 +68,7 @@ fn an_execution_model_is_read_as_it_is_written() {
     assert_eq!(enter.map_of, Some(0));
     assert_eq!(enter.protected.len(), 1);
     let suspension = enter.suspension.as_ref().unwrap();
-    assert_eq!(suspension.effect.remove[0].args, [Term::Variable(3)]);
+    assert_eq!(suspension.effect.remove[0].fact.args, [Term::Variable(3)]);
     assert_eq!(suspension.resume.args, [0, 1, 2].map(Term::Variable));
     assert!(!area.model.actions["explain"].repeatable);
     assert_eq!(

@@ -5,7 +5,7 @@ use super::super::fit::{
 };
 use super::DomainError;
 use crate::model::{
-    ActionModel, Domain, Effect, ExecutionModel, Literal, Number, Parameter, Pattern, Symbol,
+    ActionModel, Clause, Domain, Effect, ExecutionModel, Number, Parameter, Pattern, Symbol,
     TaskModel, Term,
 };
 
@@ -122,7 +122,7 @@ impl<'a> Place<'a> {
                 .effect
                 .add
                 .iter()
-                .any(|fact| fact.name == *self.subject)
+                .any(|change| change.fact.name == *self.subject)
             {
                 self.errors.push(DomainError::ObservableAdded {
                     key: "observable".to_owned(),
@@ -144,24 +144,35 @@ impl<'a> Place<'a> {
         }
     }
 
-    fn condition(&mut self, key: &str, condition: &[Literal]) {
+    fn condition(&mut self, key: &str, condition: &[Clause]) {
         for literal in condition {
             match literal {
-                Literal::Fact(_, pattern) => {
+                Clause::Fact(_, pattern) => {
                     self.pattern(key, Sort::Predicate, pattern, Closeness::Possible);
                 }
-                Literal::Equal(_, left, right) => {
+                Clause::Equal(_, left, right) => {
                     for term in [left, right] {
                         self.constant(key, term);
                     }
+                }
+                Clause::Any(choices) => {
+                    for choice in choices {
+                        self.condition(key, choice);
+                    }
+                }
+                Clause::Every(variables, inner) | Clause::Exists(variables, inner) => {
+                    self.types(key, variables);
+                    self.condition(key, inner);
                 }
             }
         }
     }
 
     fn effect(&mut self, key: &str, effect: &Effect) {
-        for pattern in effect.remove.iter().chain(&effect.add) {
-            self.pattern(key, Sort::Predicate, pattern, Closeness::Possible);
+        for change in effect.remove.iter().chain(&effect.add) {
+            self.types(key, &change.over);
+            self.condition(key, &change.when);
+            self.pattern(key, Sort::Predicate, &change.fact, Closeness::Possible);
         }
     }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::cases::{Grouping, Things};
 use super::state::{Argument, Ground, GroundEffect, Known};
 use super::{DomainError, Truth};
-use crate::model::{Domain, ExecutionModel, Literal, Operator, Pattern, Suspension, Symbol, Term};
+use crate::model::{Clause, Domain, ExecutionModel, Operator, Pattern, Suspension, Symbol, Term};
 
 /// Proves for all arguments that the resuming action can be executed once `operator` has been
 /// suspended, and that it ends where `operator` would have ended.
@@ -62,7 +62,7 @@ impl Proof<'_> {
         let mut errors = Vec::new();
         for literal in &self.resuming.precondition {
             let (proved, words) = match literal {
-                Literal::Fact(wanted, pattern) => {
+                Clause::Fact(wanted, pattern) => {
                     let Some(fact) = self.ground(pattern, |term| self.resumed(grouping, term))
                     else {
                         continue; // a fault among the names
@@ -71,7 +71,7 @@ impl Proof<'_> {
                     let words = format!("`{}` is {}", self.words(&fact), truth(Some(*wanted)));
                     (suspending.after(&fact, before) == Some(*wanted), words)
                 }
-                Literal::Equal(wanted, left, right) => {
+                Clause::Equal(wanted, left, right) => {
                     let left = self.resumed(grouping, left);
                     let right = self.resumed(grouping, right);
                     let (Some(Argument::Object(left)), Some(Argument::Object(right))) =
@@ -87,6 +87,8 @@ impl Proof<'_> {
                     );
                     ((left == right) == *wanted, words)
                 }
+                // Of what is more than a fact nothing is proved.
+                Clause::Any(_) | Clause::Every(..) | Clause::Exists(..) => continue,
             };
             if !proved {
                 errors.push(DomainError::CannotResume {
@@ -151,7 +153,7 @@ impl Proof<'_> {
         let mut known = Known::new();
         for literal in &self.operator.precondition {
             match literal {
-                Literal::Fact(holds, pattern) => {
+                Clause::Fact(holds, pattern) => {
                     let fact = self.ground(pattern, |term| self.own(grouping, term))?;
                     if known
                         .insert(fact, *holds)
@@ -160,12 +162,13 @@ impl Proof<'_> {
                         return None;
                     }
                 }
-                Literal::Equal(holds, left, right) => {
+                Clause::Equal(holds, left, right) => {
                     let (left, right) = (self.own(grouping, left)?, self.own(grouping, right)?);
                     if (left == right) != *holds {
                         return None;
                     }
                 }
+                Clause::Any(_) | Clause::Every(..) | Clause::Exists(..) => {}
             }
         }
         Some(known)
@@ -258,13 +261,14 @@ fn constants_of(operator: &Operator, suspension: &Suspension, resuming: &Operato
     let effects = [&operator.effect, &suspension.effect, &resuming.effect];
     for literal in literals {
         match literal {
-            Literal::Fact(_, pattern) => pattern.args.iter().for_each(&mut term),
-            Literal::Equal(_, left, right) => [left, right].into_iter().for_each(&mut term),
+            Clause::Fact(_, pattern) => pattern.args.iter().for_each(&mut term),
+            Clause::Equal(_, left, right) => [left, right].into_iter().for_each(&mut term),
+            Clause::Any(_) | Clause::Every(..) | Clause::Exists(..) => {}
         }
     }
     for effect in effects {
-        for pattern in effect.remove.iter().chain(&effect.add) {
-            pattern.args.iter().for_each(&mut term);
+        for change in effect.remove.iter().chain(&effect.add) {
+            change.fact.args.iter().for_each(&mut term);
         }
     }
     suspension.resume.args.iter().for_each(&mut term);

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::model::{Effect, Pattern, Symbol, Term};
+use crate::model::{Change, Effect, Symbol, Term};
 
 /// A fact over objects that are known only by number.
 pub(super) type Ground = (Symbol, Vec<usize>);
@@ -33,13 +33,14 @@ impl GroundEffect {
         effect: &Effect,
         argument: impl Fn(&Term) -> Option<Argument>,
     ) -> Option<Self> {
-        let ground = |pattern: &Pattern| {
+        let ground = |change: &Change| {
+            let pattern = &change.fact;
             let args = pattern.args.iter().map(&argument).collect::<Option<_>>()?;
             Some((pattern.name.clone(), args))
         };
-        let remove = effect.remove.iter().map(ground).collect::<Option<_>>()?;
+        let remove = effect.remove.iter().map(&ground).collect::<Option<_>>()?;
         let added: Vec<(Symbol, Vec<Argument>)> =
-            effect.add.iter().map(ground).collect::<Option<_>>()?;
+            effect.add.iter().map(&ground).collect::<Option<_>>()?;
         let add = added
             .into_iter()
             .map(|(name, args)| {
