@@ -278,6 +278,22 @@ pub(crate) enum MapCommand {
         /// A map in the shape of Nav2's Route Server.
         file: PathBuf,
     },
+    /// Make up a museum of any size, to see how things go on a map as large as yours.
+    Scale(ScaleArgs),
+}
+
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ScaleArgs {
+    /// How many nodes it is to have. There is an area for every five of them.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(maps::MOST_NODES)))]
+    pub(crate) nodes: u32,
+    /// The same seed makes the same museum.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// The file to write the map to, or a folder (it exists, or its name ends in `/`) to write a whole
+    /// place to, with the museum's domains. Without it the map is printed.
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]

@@ -17,7 +17,7 @@ pub use exit::{Exit, Failure};
 
 use agent_core::protocol::Command as Wish;
 use cli::{Command, DomainCommand, MapCommand, RoleCommand};
-use command::{check, control, demo, goal, status, up, watch};
+use command::{check, control, demo, goal, scale, status, up, watch};
 
 /// Carries out what was typed.
 ///
@@ -36,6 +36,7 @@ pub async fn run(cli: Cli) -> Result<Exit, Failure> {
         Command::Status(args) => status::run(args).await,
         Command::Watch(args) => watch::run(args).await,
         Command::Map(MapCommand::Check { file }) => check::map(&file),
+        Command::Map(MapCommand::Scale(args)) => scale::run(&args),
         Command::Domain(DomainCommand::Check { dir }) => check::domain(&dir),
         Command::Role(role) => run_role(role).await,
     }

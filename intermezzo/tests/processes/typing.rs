@@ -65,3 +65,28 @@ async fn bad_input_is_named() {
     assert!(said.out.contains("40 nodes"), "{said:?}");
     user.ok(&["domain", "check", museum]).await;
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_museum_of_any_size_is_a_map_or_a_place_like_any_other() {
+    let user = User::new().await;
+    let map = user.path().join("made_up.geojson");
+    let map = map.to_str().unwrap();
+    let said = user
+        .ok(&["map", "scale", "--nodes", "400", "--seed", "7", "-o", map])
+        .await;
+    assert!(said.out.contains("80 areas, 400 nodes"), "{said:?}");
+    let checked = user.ok(&["map", "check", map]).await;
+    assert!(checked.out.contains("in order"), "{checked:?}");
+    let printed = user
+        .ok(&["map", "scale", "--nodes", "400", "--seed", "7"])
+        .await;
+    assert_eq!(printed.out, std::fs::read_to_string(map).unwrap());
+
+    let place = user.path().join("large/");
+    let place = place.to_str().unwrap();
+    user.ok(&["map", "scale", "--nodes", "80", "-o", place])
+        .await;
+    user.ok(&["domain", "check", place]).await;
+    let said = user.run(&["map", "scale", "--nodes", "0"]).await;
+    assert_eq!(said.code, Some(2), "{said:?}");
+}

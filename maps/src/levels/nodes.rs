@@ -10,11 +10,12 @@ use crate::site::{Node, Passage, Site, metres};
 /// One area for the child agent, in the words of `node.hddl`: its nodes and passages, its doors
 /// and what lies right behind them. `None` if there is no such area.
 pub fn node_level(site: &Site, area: &str) -> Option<Map> {
-    let area = site.area(area)?.name();
+    let area = site.area(area)?;
     Some(excerpt(
         site,
-        |passage| site.areas_of(passage).contains(&area),
-        |node| node.area() == area,
+        site.passages_at(area.nodes()),
+        area.nodes().filter_map(|node| site.node(node.as_str())),
+        |passage| site.areas_of(passage).contains(&area.name()),
     ))
 }
 
@@ -30,7 +31,7 @@ pub fn area_maps(site: &Site) -> BTreeMap<Symbol, Map> {
 
 /// The whole site in the words of `node.hddl`, for an agent without a parent.
 pub fn whole_node_level(site: &Site) -> Map {
-    excerpt(site, |_| true, |_| true)
+    excerpt(site, site.passages().collect(), site.nodes(), |_| true)
 }
 
 /// What the child agent believes of itself when the robot stands at a node. `None` if there is
@@ -39,17 +40,17 @@ pub fn node_start(site: &Site, node: &str) -> Option<Vec<Fact>> {
     Some(vec![atom("at", &[site.node(node)?.name()])])
 }
 
-/// The nodes that belong, the passages that do, and the nodes at their ends.
-fn excerpt(
-    site: &Site,
-    passage_belongs: impl Fn(&Passage) -> bool,
-    node_belongs: impl Fn(&Node) -> bool,
+/// These nodes, these passages, which are all that `belongs` accepts, and the nodes at their ends.
+fn excerpt<'a>(
+    site: &'a Site,
+    passages: Vec<&'a Passage>,
+    nodes: impl Iterator<Item = &'a Node>,
+    belongs: impl Fn(&Passage) -> bool,
 ) -> Map {
-    let passages: Vec<&Passage> = site.passages().filter(|one| passage_belongs(one)).collect();
     let ends = passages.iter().flat_map(|passage| passage.ends());
     let nodes: BTreeMap<&Symbol, &Node> = ends
         .filter_map(|end| site.node(end.as_str()))
-        .chain(site.nodes().filter(|node| node_belongs(node)))
+        .chain(nodes)
         .map(|node| (node.name(), node))
         .collect();
 
@@ -58,7 +59,7 @@ fn excerpt(
         map.object(node.name(), "node");
         map.object(node.area(), "area");
         map.fact("inside", &[node.name(), node.area()]);
-        for (to, length_mm) in site.distances_mm(node, &passage_belongs) {
+        for (to, length_mm) in site.distances_mm(node, &belongs) {
             map.value("distance", &[node.name(), to], metres(length_mm));
         }
     }

@@ -20,9 +20,10 @@ pub(super) fn check(drawing: &Drawing, faults: &mut Faults) {
     ids_are_unique(drawing, faults);
     names_are_unique(drawing, faults);
     let ends = ends_of_edges(drawing, faults);
+    let doors: BTreeSet<&Symbol> = drawing.doors.iter().map(|door| &door.name).collect();
     for edge in &drawing.edges {
         if let Some((start, end)) = ends.get(&edge.origin.number) {
-            edge_fits_its_ends(edge, start, end, drawing, faults);
+            edge_fits_its_ends(edge, start, end, &doors, faults);
         }
     }
     directions_agree(drawing, faults);
@@ -94,7 +95,7 @@ fn ends_of_edges<'a>(drawing: &'a Drawing, faults: &mut Faults) -> Ends<'a> {
     for node in &drawing.nodes {
         nodes.entry(u64::from(node.id)).or_insert(node);
     }
-    let unreadable = |id| u16::try_from(id).is_ok_and(|id| drawing.unreadable.contains(&id));
+    let unreadable = |id| u32::try_from(id).is_ok_and(|id| drawing.unreadable.contains(&id));
     let mut ends = Ends::new();
     for edge in &drawing.edges {
         if edge.start == edge.end {
@@ -123,7 +124,7 @@ fn edge_fits_its_ends(
     edge: &EdgeFeature,
     start: &NodeFeature,
     end: &NodeFeature,
-    drawing: &Drawing,
+    doors: &BTreeSet<&Symbol>,
     faults: &mut Faults,
 ) {
     let [dx, dy] = [0, 1].map(|axis| end.position_m[axis] - start.position_m[axis]);
@@ -147,7 +148,7 @@ fn edge_fits_its_ends(
         _ => {}
     }
     if let Some(door) = &edge.door
-        && !drawing.doors.iter().any(|known| known.name == *door)
+        && !doors.contains(door)
     {
         let message = format!("has {door}, which is missing from the map's `doors`");
         faults.about(&edge.origin, message);
@@ -227,13 +228,13 @@ fn doors_are_used(drawing: &Drawing, ends: &Ends<'_>, faults: &mut Faults) {
 }
 
 fn areas_are_used(drawing: &Drawing, faults: &mut Faults) {
+    let mut nodes_of: BTreeMap<&Symbol, Vec<&NodeFeature>> = BTreeMap::new();
+    for node in &drawing.nodes {
+        nodes_of.entry(&node.area).or_default().push(node);
+    }
     for area in &drawing.areas {
-        let mut nodes = drawing
-            .nodes
-            .iter()
-            .filter(|node| node.area == area.name)
-            .peekable();
-        if nodes.peek().is_none() {
+        let nodes = nodes_of.get(&area.name).map_or(&[][..], Vec::as_slice);
+        if nodes.is_empty() {
             faults.add(area.line, format!("area {} has no node", area.name));
         }
         let Some([west, south, east, north]) = area.rectangle_m else {
@@ -254,7 +255,7 @@ fn areas_are_used(drawing: &Drawing, faults: &mut Faults) {
 fn areas_hold_together(drawing: &Drawing, ends: &Ends<'_>, faults: &mut Faults) {
     let mut inside: DiGraph<&NodeFeature, ()> = DiGraph::new();
     let mut between: DiGraph<&Symbol, ()> = DiGraph::new();
-    let mut nodes: BTreeMap<u16, NodeIndex> = BTreeMap::new();
+    let mut nodes: BTreeMap<u32, NodeIndex> = BTreeMap::new();
     let mut areas: BTreeMap<&Symbol, NodeIndex> = BTreeMap::new();
     for node in &drawing.nodes {
         nodes
@@ -286,10 +287,11 @@ fn areas_hold_together(drawing: &Drawing, ends: &Ends<'_>, faults: &mut Faults) 
         }
     }
 
-    let line_of = |area: &Symbol| {
-        let first = drawing.nodes.iter().find(|node| node.area == *area);
-        first.map_or(1, |node| node.origin.line)
-    };
+    let mut lines: BTreeMap<&Symbol, usize> = BTreeMap::new();
+    for node in &drawing.nodes {
+        lines.entry(&node.area).or_insert(node.origin.line);
+    }
+    let line_of = |area: &Symbol| lines.get(area).copied().unwrap_or(1);
     let parts = kosaraju_scc(&between)
         .into_iter()
         .map(|part| part.into_iter().map(|index| between[index]).collect())

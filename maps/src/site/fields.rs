@@ -6,8 +6,8 @@ use geojson::{JsonObject, JsonValue};
 use super::faults::{Faults, Origin};
 use super::read::{EdgeFeature, NodeFeature};
 
-/// Nav2's interface carries ids as 16 bits.
-const MAX_ID: u64 = 65_535;
+/// Nav2's Route Server counts in 32 bits, its messages in 16 (`maps/README.md`).
+const MAX_ID: u64 = 4_294_967_295;
 /// Sums of lengths stay far from the limits of their type.
 const MAX_LENGTH_M: f64 = 1e6;
 
@@ -24,16 +24,16 @@ impl Fields<'_> {
         self.faults.about(self.origin, message);
     }
 
-    pub(super) fn id(&mut self, what: &str) -> Option<u16> {
+    pub(super) fn id(&mut self, what: &str) -> Option<u32> {
         let Some(value) = self.properties.get("id") else {
             self.fault(format!("is meant as {what}, but has no `properties.id`"));
             return None;
         };
         match value.as_u64() {
-            Some(id) if id <= MAX_ID => u16::try_from(id).ok(),
+            Some(id) if id <= MAX_ID => u32::try_from(id).ok(),
             Some(id) => {
                 self.fault(format!(
-                    "has the id {id}; the largest that Nav2 carries is {MAX_ID}"
+                    "has the id {id}; the largest that Nav2 knows is {MAX_ID}"
                 ));
                 None
             }
@@ -94,7 +94,7 @@ impl Fields<'_> {
 
     pub(super) fn node(
         mut self,
-        id: u16,
+        id: u32,
         name: Option<Symbol>,
         position: &[f64],
     ) -> Option<NodeFeature> {
@@ -123,7 +123,7 @@ impl Fields<'_> {
         })
     }
 
-    pub(super) fn edge(mut self, id: u16, name: Option<Symbol>) -> Option<EdgeFeature> {
+    pub(super) fn edge(mut self, id: u32, name: Option<Symbol>) -> Option<EdgeFeature> {
         let [start, end] = ["startid", "endid"].map(|key| {
             let value = self.properties.get(key).and_then(JsonValue::as_u64);
             if value.is_none() {

@@ -12,7 +12,7 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use agent_core::model::Symbol;
@@ -136,6 +136,23 @@ impl Site {
                 .edges_directed(*index, Direction::Outgoing)
                 .map(|edge| (&self.passages[*edge.weight()], &self.graph[edge.target()]))
         })
+    }
+
+    /// The passages that end at one of these nodes, each once, in the order of
+    /// [`passages`](Self::passages).
+    pub(crate) fn passages_at<'a>(&self, nodes: impl Iterator<Item = &'a Symbol>) -> Vec<&Passage> {
+        let indices = nodes.filter_map(|node| self.nodes.get(node));
+        let found: BTreeSet<usize> = indices
+            .flat_map(|index| {
+                let edges = [Direction::Outgoing, Direction::Incoming]
+                    .map(|direction| self.graph.edges_directed(*index, direction));
+                edges.into_iter().flatten().map(|edge| *edge.weight())
+            })
+            .collect();
+        found
+            .into_iter()
+            .map(|index| &self.passages[index])
+            .collect()
     }
 
     /// The areas at the two ends of a passage; the same one twice unless it has a door.

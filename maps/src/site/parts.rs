@@ -5,7 +5,7 @@ use agent_core::model::Symbol;
 /// A point where the robot knows where it is: an intersection, an exhibit, one side of a door.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    pub(super) id: u16,
+    pub(super) id: u32,
     pub(super) name: Symbol,
     pub(super) area: Symbol,
     pub(super) kind: Option<String>,
@@ -15,7 +15,7 @@ pub struct Node {
 
 impl Node {
     /// The number that Nav2 knows it by.
-    pub fn id(&self) -> u16 {
+    pub fn id(&self) -> u32 {
         self.id
     }
 

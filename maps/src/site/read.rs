@@ -19,12 +19,12 @@ pub(super) struct Drawing {
     pub(super) doors: Vec<DoorMember>,
     pub(super) areas: Vec<AreaMember>,
     /// Ids of features that could not be read, so that nobody is told that they do not exist.
-    pub(super) unreadable: BTreeSet<u16>,
+    pub(super) unreadable: BTreeSet<u32>,
 }
 
 pub(super) struct NodeFeature {
     pub(super) origin: Origin,
-    pub(super) id: u16,
+    pub(super) id: u32,
     pub(super) name: Symbol,
     pub(super) area: Symbol,
     pub(super) kind: Option<String>,
@@ -34,7 +34,7 @@ pub(super) struct NodeFeature {
 
 pub(super) struct EdgeFeature {
     pub(super) origin: Origin,
-    pub(super) id: u16,
+    pub(super) id: u32,
     pub(super) start: u64,
     pub(super) end: u64,
     pub(super) name: Symbol,
@@ -215,7 +215,7 @@ fn read_feature(text: &str, mut origin: Origin, drawing: &mut Drawing, faults: &
         Err(error) => {
             let id = serde_json::from_str::<JsonValue>(text)
                 .ok()
-                .and_then(|value| u16::try_from(value["properties"]["id"].as_u64()?).ok());
+                .and_then(|value| u32::try_from(value["properties"]["id"].as_u64()?).ok());
             drawing.unreadable.extend(id);
             if let Some(id) = id {
                 origin.called = format!("the feature with id {id}");
@@ -299,7 +299,7 @@ fn role_of<'a>(
 /// Two edges without a name are one passage if they are each other's way back; it is called after
 /// the smaller id.
 fn name_the_nameless(edges: &mut [EdgeFeature]) {
-    let mut first: BTreeMap<(u64, u64), u16> = BTreeMap::new();
+    let mut first: BTreeMap<(u64, u64), u32> = BTreeMap::new();
     let mut edges: Vec<&mut EdgeFeature> = edges.iter_mut().filter(|edge| !edge.named).collect();
     edges.sort_by_key(|edge| edge.id);
     for edge in edges {

@@ -49,8 +49,11 @@ fn ids_that_nav2_could_not_use() {
         assert_findings(&found, &["which is not a whole number"]);
     }
     assert_findings(
-        &changed(99, edge(65_536, 1, 2, r#""name": "arc9", "length_m": 4"#)),
-        &["has the id 65536; the largest that Nav2 carries is 65535"],
+        &changed(
+            99,
+            edge(4_294_967_296, 1, 2, r#""name": "arc9", "length_m": 4"#),
+        ),
+        &["has the id 4294967296; the largest that Nav2 knows is 4294967295"],
     );
 }
 

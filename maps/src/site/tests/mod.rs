@@ -25,7 +25,7 @@ fn node(id: &str, name: &str, area: &str, position: &str) -> String {
     )
 }
 
-fn edge(id: u32, from: u32, to: u32, metadata: &str) -> String {
+fn edge(id: u64, from: u32, to: u32, metadata: &str) -> String {
     format!(
         r#"{{"type": "Feature", "properties": {{"id": {id}, "startid": {from}, "endid": {to}, "metadata": {{{metadata}}}}}, "geometry": {{"type": "LineString", "coordinates": [[0, 0], [1, 1]]}}}}"#
     )
