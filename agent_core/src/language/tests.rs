@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use super::*;
-use crate::model::{Change, Clause, Domain, Effect, FactChange, Number, Parameter, Pattern, Symbol, Term};
+use crate::model::{
+    Change, Clause, Domain, Effect, FactChange, Number, Parameter, Pattern, Symbol, Term,
+};
 
 pub(super) const AREA: &str = include_str!("../../../maps/museum/area.hddl");
 pub(super) const NODE: &str = include_str!("../../../maps/museum/node.hddl");
