@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use agent_core::language::parse_domain;
+use agent_core::language::parse_domain_strictly;
 use agent_core::model::{Domain, ExecutionModel, Symbol};
 
 use crate::Finding;
@@ -46,7 +46,7 @@ pub fn level_from_texts(
     toml: &str,
     [hddl_name, toml_name]: [&str; 2],
 ) -> Result<Level, Vec<Finding>> {
-    let domain = parse_domain(hddl).map_err(|errors| language_findings(hddl_name, errors));
+    let domain = parse_domain_strictly(hddl).map_err(|errors| language_findings(hddl_name, errors));
     let model = read_model(toml_name, toml, domain.as_ref().ok());
     match (domain, model) {
         (Ok(domain), Ok(model)) => Ok(Level { domain, model }),
@@ -184,7 +184,7 @@ fn read_text(path: &Path) -> Result<String, Finding> {
 }
 
 fn domain_findings(file: &Path, text: &str) -> Vec<Finding> {
-    let errors = parse_domain(text).err().unwrap_or_default();
+    let errors = parse_domain_strictly(text).err().unwrap_or_default();
     language_findings(&file.display().to_string(), errors)
 }
 

@@ -4,11 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::action::{self, action};
 use super::error::{Faults, LanguageError};
+use super::expression::object;
 use super::fields::{Fields, fields, read_parameters};
 use super::method::{self, method};
 use super::near::hint;
+use super::section::{requirements, sections};
 use super::tree::{self, Tree};
-use super::typed_list::{kind_of, name, parameters, typed_list};
+use super::typed_list::{either, kind_of, name, parameters, typed_list};
 use crate::model::{Domain, Number, Operator, Parameter, Symbol};
 
 /// Sections in the order in which they must be read, so that what is used is known by then.
@@ -23,35 +25,23 @@ const SECTIONS: &[&str] = &[
     ":method",
 ];
 
-/// What authors announce. Whatever of it is used and not read here is refused at its place.
-const REQUIREMENTS: &[&str] = &[
-    ":strips",
-    ":typing",
-    ":hierarchy",
-    ":hierachy", // so in the published benchmark domains
-    ":htn",
-    ":method-preconditions",
-    ":negative-preconditions",
-    ":disjunctive-preconditions",
-    ":existential-preconditions",
-    ":universal-preconditions",
-    ":quantified-preconditions",
-    ":universal-effects",
-    ":conditional-effects",
-    ":equality",
-    ":constraints",
-    ":fluents",
-    ":numeric-fluents",
-    ":action-costs",
-    ":adl",
-    ":partial-order",
-    ":total-order",
-];
-
 /// Reads a domain and checks that everything it uses is declared and fits.
 ///
 /// All faults that can be told apart are reported at once, in the order of the text.
 pub fn parse_domain(text: &str) -> Result<Domain, Vec<LanguageError>> {
+    read_domain(text, false)
+}
+
+/// Reads a domain as [`parse_domain`] does, and refuses also what has a meaning but is probably a
+/// slip: a task that no method does, two methods of one name, an argument that can never be of
+/// the type wanted, a requirement that nobody knows.
+///
+/// For domains that agents act on, which deserve the care; published ones are full of such things.
+pub fn parse_domain_strictly(text: &str) -> Result<Domain, Vec<LanguageError>> {
+    read_domain(text, true)
+}
+
+fn read_domain(text: &str, strict: bool) -> Result<Domain, Vec<LanguageError>> {
     let mut faults = Faults::default();
     let trees = tree::read(text, &mut faults);
     if !faults.is_empty() {
@@ -64,10 +54,16 @@ pub fn parse_domain(text: &str) -> Result<Domain, Vec<LanguageError>> {
         task_places: BTreeMap::new(),
     };
     reader.read(&trees);
-    if reader.faults.is_empty() {
-        Ok(reader.domain)
+    let Reader {
+        domain, mut faults, ..
+    } = reader;
+    if strict {
+        faults.be_strict();
+    }
+    if faults.is_empty() {
+        Ok(domain)
     } else {
-        Err(reader.faults.into_errors(text))
+        Err(faults.into_errors(text))
     }
 }
 
@@ -88,16 +84,20 @@ struct Headed<'t> {
 
 impl Reader {
     fn read(&mut self, trees: &[Tree]) {
-        let sections = self.sections(trees);
+        let Some((name, sections)) = sections(trees, "domain", SECTIONS, &mut self.faults) else {
+            return;
+        };
+        self.domain.name = name;
         let of = |keyword: &'static str| {
             sections
                 .iter()
                 .filter(move |section| section.head() == Some(keyword))
                 .filter_map(|section| Some((section.at, section.list()?.get(1..)?)))
         };
-        of(":requirements").for_each(|(_, items)| self.requirements(items));
+        of(":requirements").for_each(|(_, items)| requirements(items, &mut self.faults));
         let types: Vec<Tree> = of(":types").flat_map(|(_, items)| items.to_vec()).collect();
         self.types(&types);
+        sections.iter().for_each(|section| self.unions(section));
         of(":constants").for_each(|(_, items)| self.constants(items));
         of(":predicates").for_each(|(_, items)| self.predicates(items));
         of(":functions").for_each(|(_, items)| self.functions(items));
@@ -120,74 +120,11 @@ impl Reader {
         self.undone_tasks();
     }
 
-    /// The sections of the one domain that the text must be.
-    fn sections<'t>(&mut self, trees: &'t [Tree]) -> Vec<&'t Tree> {
-        let Some((define, after)) = trees.split_first() else {
-            self.faults
-                .add(0, "this is empty; a domain is `(define (domain NAME) …)`");
-            return Vec::new();
-        };
-        let wrong = "expected `(define (domain NAME) …)`";
-        let (Some("define"), Some(items)) = (define.head(), define.list()) else {
-            self.faults.add(define.at, wrong);
-            return Vec::new();
-        };
-        match items.get(1) {
-            Some(header) => match (header.head(), header.list()) {
-                (Some("domain"), Some([_, domain])) => {
-                    if let Some(name) = name(domain, "the domain's name", &mut self.faults) {
-                        self.domain.name = name;
-                    }
-                }
-                (Some("problem"), _) => {
-                    self.faults
-                        .add(header.at, "this is a problem; a domain is expected here");
-                    return Vec::new();
-                }
-                _ => self.faults.add(header.at, wrong),
-            },
-            None => self.faults.add(define.at, wrong),
-        }
-        if let Some(first) = after.first() {
-            self.faults.add(
-                first.at,
-                "the domain has ended before this: there is a `)` too many above",
-            );
-        }
-        let sections: Vec<&Tree> = items.iter().skip(2).chain(after).collect();
-        for section in &sections {
-            match section.head() {
-                Some(head) if SECTIONS.contains(&head) => {}
-                Some(head) if head.starts_with(':') => {
-                    let hint = hint(head, SECTIONS.iter().copied(), "; it is not supported yet");
-                    let message = format!("`{head}` is not a section that is read here{hint}");
-                    self.faults.add(section.at, message);
-                }
-                _ => self.faults.add(
-                    section.at,
-                    format!("expected a section such as `(:action …)`, found `{section}`"),
-                ),
-            }
-        }
-        sections
-    }
-
-    fn requirements(&mut self, items: &[Tree]) {
-        for item in items {
-            let word = item.word().unwrap_or_default();
-            if !REQUIREMENTS.contains(&word) {
-                let hint = hint(word, REQUIREMENTS.iter().copied(), "; it is not supported");
-                let message = format!("unknown requirement `{item}`{hint}");
-                self.faults.add(item.at, message);
-            }
-        }
-    }
-
     fn types(&mut self, items: &[Tree]) {
         let list = typed_list(items, &mut self.faults);
         let mut places = BTreeMap::new();
         for typed in &list {
-            if typed.name.word() == Some("object") && typed.kind.is_none() {
+            if typed.name.word() == Some("object") {
                 continue; // some write out what holds anyway
             }
             let Some(kind) = name(typed.name, "a type", &mut self.faults) else {
@@ -195,19 +132,35 @@ impl Reader {
             };
             let above =
                 kind_of(typed, None, &mut self.faults).unwrap_or_else(|| Symbol::from("object"));
-            if self.domain.types.insert(kind.clone(), above).is_some() {
-                let message = format!("type `{kind}` is declared twice");
-                self.faults.add(typed.name.at, message);
+            match self.domain.types.insert(kind.clone(), above.clone()) {
+                Some(before) if before == above => {
+                    let message = format!("type `{kind}` is declared twice");
+                    self.faults.slip(typed.name.at, message);
+                }
+                Some(_) => {
+                    let message = format!("type `{kind}` is declared twice");
+                    self.faults.add(typed.name.at, message);
+                }
+                None => {}
             }
             places.insert(kind, typed.name.at);
         }
         // Only now are all types known that may stand above others.
         let mut checked = BTreeSet::new();
-        for typed in &list {
-            let place = typed.kind.map(|kind| kind.at);
-            if place.is_some_and(|place| checked.insert(place)) {
-                kind_of(typed, Some(&self.domain), &mut self.faults);
+        for kind in list.iter().filter_map(|typed| typed.kind) {
+            if let Some(word) = kind.word().filter(|word| *word != "object")
+                && !self.domain.types.contains_key(word)
+                && checked.insert(word)
+            {
+                let among = self.domain.types.keys().map(Symbol::as_str);
+                let hint = hint(word, among, "; declare it in `(:types …)`");
+                let message = format!("type `{word}` is not declared{hint}");
+                self.faults.slip(kind.at, message);
             }
+        }
+        for above in checked {
+            let above = Symbol::from(above);
+            self.domain.types.insert(above, Symbol::from("object"));
         }
         for (kind, at) in places {
             let mut above = self.domain.types.get(&kind);
@@ -226,16 +179,28 @@ impl Reader {
         }
     }
 
+    /// Every `(either …)` that occurs anywhere.
+    fn unions(&mut self, tree: &Tree) {
+        if let Some((union, members)) = either(tree).filter(|(_, members)| members.len() > 1) {
+            self.domain.unions.insert(union, members);
+        }
+        for item in tree.list().unwrap_or_default() {
+            self.unions(item);
+        }
+    }
+
     fn constants(&mut self, items: &[Tree]) {
         for typed in typed_list(items, &mut self.faults) {
-            let Some(object) = name(typed.name, "a constant", &mut self.faults) else {
+            let Some(constant) = object(typed.name, &mut self.faults) else {
                 continue;
             };
             let kind = kind_of(&typed, Some(&self.domain), &mut self.faults)
                 .unwrap_or_else(|| Symbol::from("object"));
-            if self.domain.constants.insert(object.clone(), kind).is_some() {
-                let message = format!("constant `{object}` is declared twice");
-                self.faults.add(typed.name.at, message);
+            let message = format!("constant `{constant}` is declared twice");
+            match self.domain.constants.insert(constant, kind.clone()) {
+                Some(before) if before == kind => self.faults.slip(typed.name.at, message),
+                Some(_) => self.faults.add(typed.name.at, message),
+                None => {}
             }
         }
     }
@@ -245,10 +210,11 @@ impl Reader {
             let Some((name, parameters)) = self.declaration(item, "a predicate") else {
                 continue;
             };
-            let twice = self.domain.predicates.insert(name.clone(), parameters);
-            if twice.is_some() {
-                let message = format!("predicate `{name}` is declared twice");
-                self.faults.add(item.at, message);
+            let message = format!("predicate `{name}` is declared twice");
+            match self.domain.predicates.insert(name, parameters.clone()) {
+                Some(before) if before == parameters => self.faults.slip(item.at, message),
+                Some(_) => self.faults.add(item.at, message),
+                None => {}
             }
         }
     }
@@ -264,10 +230,11 @@ impl Reader {
             let Some((name, parameters)) = self.declaration(typed.name, "a function") else {
                 continue;
             };
-            let twice = self.domain.functions.insert(name.clone(), parameters);
-            if twice.is_some() {
-                let message = format!("function `{name}` is declared twice");
-                self.faults.add(typed.name.at, message);
+            let message = format!("function `{name}` is declared twice");
+            match self.domain.functions.insert(name, parameters.clone()) {
+                Some(before) if before == parameters => self.faults.slip(typed.name.at, message),
+                Some(_) => self.faults.add(typed.name.at, message),
+                None => {}
             }
         }
     }
@@ -363,7 +330,7 @@ impl Reader {
         let name = head.name;
         if self.domain.methods.iter().any(|known| known.name == name) {
             let message = format!("method `{name}` is declared twice");
-            self.faults.add(head.at, message);
+            self.faults.slip(head.at, message);
         }
         let method = method(name, head.at, &head.fields, &self.domain, &mut self.faults);
         if let Some((_, tree)) = head.fields.get(":task") {
@@ -376,7 +343,7 @@ impl Reader {
     fn undone_tasks(&mut self) {
         for (task, at) in std::mem::take(&mut self.task_places) {
             let message = format!("no method does the task `{task}`; write one, or remove it");
-            self.faults.add(at, message);
+            self.faults.slip(at, message);
         }
     }
 }

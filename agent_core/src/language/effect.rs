@@ -1,13 +1,10 @@
 //! What an action makes true or false, and what it costs.
 
-use std::collections::BTreeSet;
-
 use super::error::Faults;
-use super::expression::{NOT_YET, Scope, not_yet};
+use super::expression::{Scope, UNSUPPORTED, unsupported};
 use super::fit::Sort;
 use super::tree::Tree;
-use super::typed_list::parameters;
-use crate::model::{Change, Effect, Number, Parameter, Pattern, Term};
+use crate::model::{Change, Clause, Condition, Effect, Number, Term};
 
 /// An effect as written: facts, and perhaps a cost.
 #[derive(Default)]
@@ -16,33 +13,114 @@ pub(super) struct CostedEffect {
     pub(super) cost: Option<Number>,
 }
 
+/// Where an effect stands: within which quantifiers and conditions.
+struct Place<'a> {
+    /// The action's parameters and the quantified variables.
+    scope: Scope<'a>,
+    /// How many of these are the action's parameters.
+    own: usize,
+    when: Condition,
+}
+
 impl CostedEffect {
     /// Adds one more effect, which may be a conjunction of several.
     pub(super) fn read(&mut self, tree: &Tree, scope: &Scope<'_>, faults: &mut Faults) {
+        let place = Place {
+            scope: *scope,
+            own: scope.parameters.len(),
+            when: Condition::new(),
+        };
+        self.read_in(tree, &place, faults);
+    }
+
+    fn read_in(&mut self, tree: &Tree, place: &Place<'_>, faults: &mut Faults) {
         match (tree.head(), tree.list()) {
             (_, Some([])) => {}
             (Some("and"), Some(items)) => {
                 for item in &items[1..] {
-                    self.read(item, scope, faults);
+                    self.read_in(item, place, faults);
                 }
             }
-            (Some("not"), _) => self
-                .effect
-                .remove
-                .extend(removed(tree, scope, faults).map(Change::from)),
-            (Some("forall"), _) => self.effect.remove.extend(quantified(tree, scope, faults)),
-            (Some("increase"), Some(items)) => self.increase(tree, &items[1..], scope, faults),
-            (Some(head), _) if head == "=" || NOT_YET.contains(&head) => {
-                not_yet(tree, head, faults);
+            (Some("not"), Some(items)) => self.removed(tree, items, place, faults),
+            (Some("forall"), _) => self.quantified(tree, place, faults),
+            (Some("when"), Some(items)) => self.conditional(tree, items, place, faults),
+            (Some("increase"), Some(items)) => self.increase(tree, &items[1..], place, faults),
+            (Some(head @ ("or" | "imply" | "exists" | "=")), _) => {
+                unsupported(tree, &format!("{head} in an effect"), faults);
             }
+            (Some(head), _) if UNSUPPORTED.contains(&head) => unsupported(tree, head, faults),
             _ => {
-                let added = scope.pattern(tree, Sort::Predicate, faults);
-                self.effect.add.extend(added.map(Change::from));
+                let added = self.change(tree, place, faults);
+                self.effect.add.extend(added);
             }
         }
     }
 
-    fn increase(&mut self, tree: &Tree, items: &[Tree], scope: &Scope<'_>, faults: &mut Faults) {
+    /// `(not (at ?x))`
+    fn removed(&mut self, tree: &Tree, items: &[Tree], place: &Place<'_>, faults: &mut Faults) {
+        let [_, inner] = items else {
+            faults.add(tree.at, "`not` takes one fact: `(not (at ?x))`");
+            return;
+        };
+        match inner.head() {
+            Some("and" | "or" | "not" | "imply" | "forall" | "exists" | "when" | "=") => {
+                unsupported(tree, "not of anything but a fact in an effect", faults);
+            }
+            _ => {
+                let removed = self.change(inner, place, faults);
+                self.effect.remove.extend(removed);
+            }
+        }
+    }
+
+    fn change(&self, tree: &Tree, place: &Place<'_>, faults: &mut Faults) -> Option<Change> {
+        Some(Change {
+            fact: place.scope.pattern(tree, Sort::Predicate, faults)?,
+            over: place.scope.parameters[place.own..].to_vec(),
+            when: place.when.clone(),
+        })
+    }
+
+    /// `(forall (?x - node) (not (at ?x)))`, with `?x` beyond the variables known so far.
+    fn quantified(&mut self, tree: &Tree, place: &Place<'_>, faults: &mut Faults) {
+        let Some((variables, body)) = place.scope.quantified(tree, faults) else {
+            return;
+        };
+        let parameters = place.scope.with(&variables);
+        // Quantifiers in the conditions so far now stand behind these variables too.
+        let mut when = place.when.clone();
+        move_inner(&mut when, place.scope.parameters.len(), variables.len());
+        let inner = Place {
+            scope: Scope {
+                parameters: &parameters,
+                domain: place.scope.domain,
+            },
+            own: place.own,
+            when,
+        };
+        self.read_in(body, &inner, faults);
+    }
+
+    /// `(when (near ?x) (seen ?x))`
+    fn conditional(&mut self, tree: &Tree, items: &[Tree], place: &Place<'_>, faults: &mut Faults) {
+        let [_, given, body] = items else {
+            faults.add(
+                tree.at,
+                "`when` takes a condition and an effect: `(when (near ?x) (seen ?x))`",
+            );
+            return;
+        };
+        let mut when = place.when.clone();
+        when.extend(place.scope.condition(given, faults));
+        let inner = Place {
+            scope: place.scope,
+            own: place.own,
+            when,
+        };
+        self.read_in(body, &inner, faults);
+    }
+
+    fn increase(&mut self, tree: &Tree, items: &[Tree], place: &Place<'_>, faults: &mut Faults) {
         let [function, by] = items else {
             faults.add(tree.at, "write `(increase (total-cost) 3)`");
             return;
@@ -54,8 +132,15 @@ impl CostedEffect {
             );
             return;
         }
-        scope.pattern(function, Sort::Function, faults);
-        let cost = scope.number(by, faults);
+        if place.scope.parameters.len() > place.own || !place.when.is_empty() {
+            faults.add(
+                tree.at,
+                "a cost within `when` or `forall` is not supported; write it beside them",
+            );
+            return;
+        }
+        place.scope.pattern(function, Sort::Function, faults);
+        let cost = place.scope.number(by, faults);
         if matches!(cost, Some(Number::Constant(number)) if number < 0.0) {
             faults.add(by.at, "a cost cannot be negative");
         }
@@ -66,107 +151,26 @@ impl CostedEffect {
     }
 }
 
-/// The pattern in `(not (at ?x))`.
-fn removed(tree: &Tree, scope: &Scope<'_>, faults: &mut Faults) -> Option<Pattern> {
-    match tree.list() {
-        Some([_, inner]) => match inner.head() {
-            Some(head) if matches!(head, "and" | "not" | "=") || NOT_YET.contains(&head) => {
-                not_yet(tree, "not of anything but a fact", faults);
-                None
-            }
-            _ => scope.pattern(inner, Sort::Predicate, faults),
-        },
-        _ => {
-            faults.add(tree.at, "`not` takes one fact: `(not (at ?x))`");
-            None
-        }
-    }
-}
-
-/// The pattern in `(forall (?x - node) (not (at ?x)))`, with `?x` beyond the scope's parameters.
-fn quantified(tree: &Tree, scope: &Scope<'_>, faults: &mut Faults) -> Option<Change> {
-    let Some([_, variables, body]) = tree.list() else {
-        faults.add(
-            tree.at,
-            "write `(forall (?x - node) (not (at ?x)))`: variables, then one effect",
-        );
-        return None;
-    };
-    let Some(variables) = variables.list() else {
-        faults.add(variables.at, "expected variables such as `(?x - node)`");
-        return None;
-    };
-    if body.head() != Some("not") {
-        not_yet(tree, "forall of anything but one `(not …)`", faults);
-        return None;
-    }
-    let mut all = scope.parameters.to_vec();
-    for quantified in parameters(variables, scope.domain, faults) {
-        if all.iter().any(|known| known.name == quantified.name) {
-            let name = &quantified.name;
-            faults.add(
-                tree.at,
-                format!("`{name}` is already a parameter; give the quantified one another name"),
-            );
-        }
-        all.push(quantified);
-    }
-    let inner = Scope {
-        parameters: &all,
-        domain: scope.domain,
-    };
-    let pattern = removed(body, &inner, faults)?;
-    narrowed(tree, &pattern, &all, scope, faults);
-    // Each place of a fact is matched by itself, so that `?x` twice would be any two objects.
-    let mut seen = BTreeSet::new();
-    for argument in &pattern.args {
-        if let Term::Variable(index) = argument
-            && *index >= scope.parameters.len()
-            && !seen.insert(*index)
+/// Moves all variables from number `from` on by `by`: those that quantifiers in the condition
+/// introduce, when variables are put in before them.
+fn move_inner(condition: &mut Condition, from: usize, by: usize) {
+    let term = |term: &mut Term| {
+        if let Term::Variable(index) = term
+            && *index >= from
         {
-            not_yet(tree, "forall with one variable in two places", faults);
+            *index += by;
         }
-    }
-    Some(Change {
-        over: all.split_off(scope.parameters.len()),
-        when: Vec::new(),
-        fact: pattern,
-    })
-}
-
-/// A quantified variable ranges over everything that can stand in its place. One of a narrower
-/// type would remove less than that, which an [`Effect`] cannot say.
-fn narrowed(
-    tree: &Tree,
-    pattern: &Pattern,
-    all: &[Parameter],
-    scope: &Scope<'_>,
-    faults: &mut Faults,
-) {
-    let Some((domain, declared)) = scope
-        .domain
-        .and_then(|domain| Some((domain, domain.predicates.get(&pattern.name)?)))
-    else {
-        return;
     };
-    for (argument, wanted) in pattern.args.iter().zip(declared) {
-        let Term::Variable(index) = argument else {
-            continue;
-        };
-        let Some(variable) = all.get(*index).filter(|_| *index >= scope.parameters.len()) else {
-            continue;
-        };
-        // Types that exclude each other are a fault already.
-        let narrower = !domain.is_a(&wanted.kind, &variable.kind);
-        if narrower && domain.is_a(&variable.kind, &wanted.kind) {
-            faults.add(
-                tree.at,
-                format!(
-                    "`forall` over some objects only is not supported yet: let `{}` be of type \
-                     {}, as `{}` declares it",
-                    variable.name, wanted.kind, pattern.name
-                ),
-            );
+    for clause in condition {
+        match clause {
+            Clause::Fact(_, pattern) => pattern.args.iter_mut().for_each(term),
+            Clause::Equal(_, left, right) => [left, right].into_iter().for_each(term),
+            Clause::Any(choices) => {
+                for choice in choices {
+                    move_inner(choice, from, by);
+                }
+            }
+            Clause::Every(_, inner) | Clause::Exists(_, inner) => move_inner(inner, from, by),
         }
     }
 }

@@ -27,23 +27,37 @@ impl LanguageError {
 
 /// The faults found so far; reading goes on after one, so that all are reported at once.
 #[derive(Debug, Default)]
-pub(super) struct Faults(Vec<(usize, String)>);
+pub(super) struct Faults {
+    faults: Vec<(usize, String)>,
+    slips: Vec<(usize, String)>,
+}
 
 impl Faults {
     /// Notes a fault at a byte of the text.
     pub(super) fn add(&mut self, offset: usize, message: impl Into<String>) {
-        self.0.push((offset, message.into()));
+        self.faults.push((offset, message.into()));
+    }
+
+    /// Notes what has a meaning, but is probably not what was meant: a fault only for those who
+    /// read strictly.
+    pub(super) fn slip(&mut self, offset: usize, message: impl Into<String>) {
+        self.slips.push((offset, message.into()));
+    }
+
+    /// Makes faults of all slips.
+    pub(super) fn be_strict(&mut self) {
+        self.faults.append(&mut self.slips);
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.faults.is_empty()
     }
 
     /// The faults in the order of the text.
     pub(super) fn into_errors(mut self, text: &str) -> Vec<LanguageError> {
-        self.0.sort();
-        self.0.dedup();
-        self.0
+        self.faults.sort();
+        self.faults.dedup();
+        self.faults
             .into_iter()
             .map(|(offset, message)| LanguageError::at(text, offset, message))
             .collect()

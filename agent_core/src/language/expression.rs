@@ -1,28 +1,24 @@
-//! Atoms, conditions and numbers with variables in them.
+//! Atoms and terms with variables in them.
 
 use super::error::Faults;
-use super::fit::{Closeness, Sort, misfits, no_constant};
+use super::fit::{Closeness, Misfit, Sort, misfits, no_constant};
 use super::near::hint;
-use super::tree::{Kind, Tree};
-use super::typed_list::name;
-use crate::model::{Clause, Condition, Domain, Number, Parameter, Pattern, Symbol, Term};
+use super::number::decimal;
+use super::tree::Tree;
+use super::typed_list::{name, parameters};
+use crate::model::{Domain, Parameter, Pattern, Symbol, Term};
 
 /// What the names in an expression may refer to.
 #[derive(Clone, Copy)]
 pub(super) struct Scope<'a> {
-    /// The variables.
+    /// The variables. Of two with the same name the later one counts, which is the inner one.
     pub(super) parameters: &'a [Parameter],
     /// The declarations to check against, for whoever has them at hand.
     pub(super) domain: Option<&'a Domain>,
 }
 
-/// Parts of HDDL and PDDL that a later part of the language may bring.
-pub(super) const NOT_YET: &[&str] = &[
-    "or",
-    "imply",
-    "exists",
-    "forall",
-    "when",
+/// Parts of PDDL that HDDL's total-order fragment has no place for.
+pub(super) const UNSUPPORTED: &[&str] = &[
     "decrease",
     "assign",
     "scale-up",
@@ -31,14 +27,15 @@ pub(super) const NOT_YET: &[&str] = &[
     ">",
     "<=",
     ">=",
+    "preference",
 ];
 
-/// Says that `tree` is HDDL, but none that is read here.
-pub(super) fn not_yet(tree: &Tree, what: &str, faults: &mut Faults) {
-    faults.add(tree.at, format!("`{what}` is not supported yet: `{tree}`"));
+/// Says that `tree` is PDDL, but none that is read here.
+pub(super) fn unsupported(tree: &Tree, what: &str, faults: &mut Faults) {
+    faults.add(tree.at, format!("`{what}` is not supported: `{tree}`"));
 }
 
-impl Scope<'_> {
+impl<'a> Scope<'a> {
     /// A variable of the scope, or an object.
     pub(super) fn term(&self, tree: &Tree, faults: &mut Faults) -> Option<Term> {
         let word = tree.word().unwrap_or_default();
@@ -50,7 +47,7 @@ impl Scope<'_> {
                 .iter()
                 .map(|parameter| parameter.name.as_str())
         };
-        if let Some(index) = among().position(|variable| variable == word) {
+        if let Some(index) = among().rposition(|variable| variable == word) {
             return Some(Term::Variable(index));
         }
         let hint = hint(word, among(), "; declare it among the parameters");
@@ -59,6 +56,18 @@ impl Scope<'_> {
             format!("the variable `{word}` is not declared{hint}"),
         );
         None
+    }
+
+    /// A term outside an atom, whose declaration would have been asked there.
+    pub(super) fn known_term(&self, tree: &Tree, faults: &mut Faults) -> Option<Term> {
+        let term = self.term(tree, faults)?;
+        if let (Some(domain), Term::Constant(name)) = (self.domain, &term)
+            && !domain.constants.contains_key(name)
+        {
+            let misfit = no_constant(domain, name, self.parameters);
+            faults.add(tree.at, misfit.to_string());
+        }
+        Some(term)
     }
 
     /// A name with arguments, of the given sort.
@@ -81,155 +90,56 @@ impl Scope<'_> {
             let found = misfits(domain, sort, &pattern, self.parameters, Closeness::Possible);
             for (index, misfit) in found {
                 let at = index.and_then(|index| arguments.get(index));
-                faults.add(at.unwrap_or(head).at, misfit.to_string());
+                let at = at.unwrap_or(head).at;
+                match misfit {
+                    // It is never true, or never done, which has a meaning.
+                    Misfit::Kind { .. } => faults.slip(at, misfit.to_string()),
+                    _ => faults.add(at, misfit.to_string()),
+                }
             }
         }
         Some(pattern)
     }
 
-    /// A conjunction of literals, however nested. `()` is none.
-    pub(super) fn condition(&self, tree: &Tree, faults: &mut Faults) -> Condition {
-        let mut out = Vec::new();
-        self.collect(tree, &mut out, faults);
-        out
-    }
-
-    fn collect(&self, tree: &Tree, out: &mut Condition, faults: &mut Faults) {
-        match (tree.head(), tree.list()) {
-            (_, Some([])) => {}
-            (Some("and"), Some(items)) => {
-                for item in &items[1..] {
-                    self.collect(item, out, faults);
-                }
-            }
-            _ => out.extend(self.literal(tree, faults)),
-        }
-    }
-
-    /// A fact, an equality, or one of them negated.
-    pub(super) fn literal(&self, tree: &Tree, faults: &mut Faults) -> Option<Clause> {
-        let Some("not") = tree.head() else {
-            return self.positive(tree, true, faults);
-        };
-        match tree.list() {
-            Some([_, inner]) if matches!(inner.head(), Some("and" | "not")) => {
-                let what = "not of anything but a fact or an equality";
-                not_yet(tree, what, faults);
-                None
-            }
-            Some([_, inner]) => self.positive(inner, false, faults),
-            _ => {
-                faults.add(tree.at, "`not` takes one condition: `(not (at ?x))`");
-                None
-            }
-        }
-    }
-
-    fn positive(&self, tree: &Tree, holds: bool, faults: &mut Faults) -> Option<Clause> {
-        match (tree.head(), tree.list()) {
-            (Some("="), Some([_, left, right])) => {
-                if [left, right].iter().any(|side| side.list().is_some()) {
-                    not_yet(tree, "= of numbers in a condition", faults);
-                    return None;
-                }
-                let left = self.known_term(left, faults);
-                let right = self.known_term(right, faults);
-                Some(Clause::Equal(holds, left?, right?))
-            }
-            (Some("="), _) => {
-                faults.add(tree.at, "`=` takes two arguments: `(= ?x ?y)`");
-                None
-            }
-            (Some(head), _) if NOT_YET.contains(&head) => {
-                not_yet(tree, head, faults);
-                None
-            }
-            _ => {
-                let pattern = self.pattern(tree, Sort::Predicate, faults)?;
-                Some(Clause::Fact(holds, pattern))
-            }
-        }
-    }
-
-    /// A term outside an atom, whose declaration would have been asked there.
-    fn known_term(&self, tree: &Tree, faults: &mut Faults) -> Option<Term> {
-        let term = self.term(tree, faults)?;
-        if let (Some(domain), Term::Constant(name)) = (self.domain, &term)
-            && !domain.constants.contains_key(name)
-        {
-            let misfit = no_constant(domain, name, self.parameters);
-            faults.add(tree.at, misfit.to_string());
-        }
-        Some(term)
-    }
-
-    /// A number: as written, a function, or reckoned from others.
-    pub(super) fn number(&self, tree: &Tree, faults: &mut Faults) -> Option<Number> {
-        let items = match &tree.kind {
-            Kind::Word(word) => {
-                let number = decimal(word);
-                if number.is_none() {
-                    faults.add(
-                        tree.at,
-                        format!(
-                            "expected a number such as `2.5` or a function such as `(length \
-                             ?arc)`, found `{word}`"
-                        ),
-                    );
-                }
-                return number.map(Number::Constant);
-            }
-            Kind::List(items) => items,
-        };
-        let sign = match tree.head() {
-            Some(sign @ ("+" | "*" | "-" | "/")) => sign,
-            _ => {
-                let function = self.pattern(tree, Sort::Function, faults)?;
-                return Some(Number::Function(function));
-            }
-        };
-        let parts: Vec<Option<Number>> = items[1..]
-            .iter()
-            .map(|part| self.number(part, faults))
-            .collect();
-        let parts: Vec<Number> = parts.into_iter().collect::<Option<_>>()?;
-        let wanted = match sign {
-            "+" | "*" if parts.is_empty() => "at least one number",
-            "-" | "/" if parts.len() != 2 => "two numbers",
-            _ => "",
-        };
-        if !wanted.is_empty() {
-            faults.add(tree.at, format!("`{sign}` takes {wanted}: `{tree}`"));
+    /// The parts of `(forall (?x - node) …)` and its like: the variables, and what is said of them.
+    pub(super) fn quantified<'t>(
+        &self,
+        tree: &'t Tree,
+        faults: &mut Faults,
+    ) -> Option<(Vec<Parameter>, &'t Tree)> {
+        let Some([word, variables, body]) = tree.list() else {
+            let word = tree.head().unwrap_or_default();
+            faults.add(
+                tree.at,
+                format!("write `({word} (?x - node) (…))`: variables, then one thing said of them"),
+            );
             return None;
-        }
-        let mut rest = parts.into_iter();
-        match (sign, rest.next(), rest.next()) {
-            ("+", Some(first), second) => Some(Number::Sum(chain(first, second, rest))),
-            ("*", Some(first), second) => Some(Number::Product(chain(first, second, rest))),
-            ("-", Some(left), Some(right)) => {
-                Some(Number::Difference(Box::new(left), Box::new(right)))
+        };
+        let Some(items) = variables.list() else {
+            faults.add(variables.at, "expected variables such as `(?x - node)`");
+            return None;
+        };
+        let variables = parameters(items, self.domain, faults);
+        for variable in &variables {
+            if self
+                .parameters
+                .iter()
+                .any(|outer| outer.name == variable.name)
+            {
+                let name = &variable.name;
+                faults.slip(
+                    word.at,
+                    format!("`{name}` is already a variable; give the quantified one another name"),
+                );
             }
-            (_, _, Some(Number::Constant(0.0))) => {
-                faults.add(tree.at, format!("this divides by zero: `{tree}`"));
-                None
-            }
-            (_, Some(left), Some(right)) => Some(Number::Quotient(Box::new(left), Box::new(right))),
-            _ => None,
         }
+        Some((variables, body))
     }
-}
 
-fn chain(first: Number, second: Option<Number>, rest: impl Iterator<Item = Number>) -> Vec<Number> {
-    std::iter::once(first).chain(second).chain(rest).collect()
-}
-
-/// A finite number in the usual notation. Rust would also read `inf` and `nan`.
-pub(super) fn decimal(word: &str) -> Option<f64> {
-    let digits = word.strip_prefix(['-', '+']).unwrap_or(word);
-    if !digits.starts_with(|first: char| first.is_ascii_digit() || first == '.') {
-        return None;
+    /// The variables of this scope and then `inner` ones.
+    pub(super) fn with(&self, inner: &[Parameter]) -> Vec<Parameter> {
+        [self.parameters, inner].concat()
     }
-    word.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
 /// An object, in a place where no variable can be. A number is one too: `(speak 30)`.

@@ -102,7 +102,7 @@ pub(super) fn declared<'a>(domain: &'a Domain, sort: Sort, name: &str) -> Option
 
 /// Whether `kind` stands in the domain; `object` always does.
 pub(super) fn type_is_declared(domain: &Domain, kind: &Symbol) -> bool {
-    *kind == "object" || domain.types.contains_key(kind)
+    *kind == "object" || domain.types.contains_key(kind) || domain.unions.contains_key(kind)
 }
 
 /// What to do about a name that is not of the sort wanted.

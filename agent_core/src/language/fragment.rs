@@ -2,8 +2,9 @@
 
 use super::effect::CostedEffect;
 use super::error::{Faults, LanguageError};
-use super::expression::{Scope, decimal, object};
+use super::expression::{Scope, object};
 use super::fit::Sort;
+use super::number::decimal;
 use super::tree::{self, Tree};
 use super::typed_list::{name, parameters};
 use crate::model::{Atom, Clause, Domain, Effect, FactChange, Number, Parameter, Pattern, Task};
@@ -74,15 +75,24 @@ pub fn parse_pattern(text: &str, parameters: &[Parameter]) -> Result<Pattern, La
     one(text, |tree, faults| scope.pattern(tree, Sort::Step, faults))
 }
 
-/// Reads one condition: `(open ?d)`, `(not (at ?n))`, `(= ?x ?y)` or `(not (= ?x ?y))`.
+/// Reads one condition: `(open ?d)`, `(not (at ?n))`, `(or (open ?d) (= ?x ?y))`.
 pub fn parse_literal(text: &str, parameters: &[Parameter]) -> Result<Clause, LanguageError> {
     let scope = undeclared(parameters);
     one(text, |tree, faults| {
-        if tree.head() == Some("and") {
-            faults.add(tree.at, "write the conditions of this `and` one by one");
-            return None;
+        let mut clauses = scope.condition(tree, faults);
+        match (clauses.pop(), clauses.is_empty()) {
+            (Some(clause), true) => Some(clause),
+            (Some(_), false) => {
+                faults.add(tree.at, "write the conditions of this one by one");
+                None
+            }
+            (None, _) => {
+                if faults.is_empty() {
+                    faults.add(tree.at, "this is always true; remove it");
+                }
+                None
+            }
         }
-        scope.literal(tree, faults)
     })
 }
 

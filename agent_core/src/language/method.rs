@@ -1,11 +1,11 @@
 //! `(:method …)`.
 
 use super::error::Faults;
-use super::expression::{Scope, not_yet};
+use super::expression::Scope;
 use super::fields::{Fields, read_parameters, read_precondition};
 use super::fit::Sort;
 use super::subtasks::subtasks;
-use crate::model::{Clause, Domain, Method, Symbol};
+use crate::model::{Domain, Method, Symbol};
 
 /// What may stand in a method.
 pub(super) const KEYWORDS: &[&str] = &[
@@ -45,16 +45,11 @@ pub(super) fn method(
         }
     };
     let mut precondition = read_precondition(fields, &scope, faults);
-    // Constraints that are equalities restrict the variables, just as a precondition does.
+    // Constraints restrict the variables, just as a precondition does.
     if let Some((_, tree)) = fields.get(":constraints") {
-        for literal in scope.condition(tree, faults) {
-            match literal {
-                Clause::Equal(..) => precondition.push(literal),
-                _ => not_yet(tree, "a constraint that is no equality", faults),
-            }
-        }
+        precondition.extend(scope.condition(tree, faults));
     }
-    let subtasks = subtasks(at, fields, &scope, faults);
+    let subtasks = subtasks(fields, &scope, faults);
     Some(Method {
         task: task?,
         precondition,

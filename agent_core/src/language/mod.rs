@@ -1,10 +1,11 @@
 //! The reader of HDDL, and the checks that a domain must pass before an agent acts on it.
 //!
-//! The language of this first part is total-order HDDL with types, numeric costs and conjunctive
-//! conditions. What goes beyond is refused by name and place rather than misread.
+//! The language is total-order HDDL, domains and problems. What goes beyond is refused by name and
+//! place rather than misread.
 
 mod action;
 mod check;
+mod condition;
 mod domain;
 mod effect;
 mod error;
@@ -15,6 +16,9 @@ mod fragment;
 mod lexer;
 mod method;
 mod near;
+mod number;
+mod problem;
+mod section;
 mod subtasks;
 mod tree;
 mod typed_list;
@@ -25,7 +29,7 @@ mod hostile_text;
 mod tests;
 
 pub use check::{DomainError, Truth, check_model};
-pub use domain::parse_domain;
+pub use domain::{parse_domain, parse_domain_strictly};
 pub use error::LanguageError;
 pub use fit::{Misfit, Sort};
 pub use fragment::{
@@ -33,3 +37,4 @@ pub use fragment::{
     parse_pattern, parse_tasks,
 };
 pub use near::nearest;
+pub use problem::parse_problem;

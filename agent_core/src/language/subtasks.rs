@@ -10,15 +10,26 @@ use super::near::hint;
 use super::tree::Tree;
 use crate::model::Pattern;
 
+/// What may stand beside the initial tasks of a problem.
+pub(super) const KEYWORDS: &[&str] = &[
+    ":parameters",
+    ":ordered-subtasks",
+    ":ordered-tasks",
+    ":subtasks",
+    ":tasks",
+    ":ordering",
+    ":order",
+    ":constraints",
+];
+
 /// A subtask with the name by which `:ordering` may speak of it.
 struct Subtask<'t> {
     id: Option<&'t Tree>,
     step: &'t Tree,
 }
 
-/// Reads the subtasks of a method in the order in which they are to be done.
+/// Reads the subtasks of a method or a problem in the order in which they are to be done.
 pub(super) fn subtasks(
-    at: usize,
     fields: &Fields<'_>,
     scope: &Scope<'_>,
     faults: &mut Faults,
@@ -27,39 +38,18 @@ pub(super) fn subtasks(
     let ordered = get(":ordered-subtasks").or_else(|| get(":ordered-tasks"));
     let unordered = get(":subtasks").or_else(|| get(":tasks"));
     let ordering = get(":ordering").or_else(|| get(":order"));
-    let list = match (ordered, unordered, ordering) {
-        (Some(_), Some((at, _)), _) => {
-            faults.add(at, "the subtasks are given twice; keep `:ordered-subtasks`");
+    let given = match (ordered, unordered) {
+        (Some((first, _)), Some((second, _))) => {
+            let message = "the subtasks are given twice; keep `:ordered-subtasks`";
+            faults.add(first.max(second), message);
             return Vec::new();
         }
-        (Some(_), None, Some((at, _))) => {
-            faults.add(
-                at,
-                "`:ordered-subtasks` gives the order already; remove this",
-            );
-            return Vec::new();
-        }
-        (Some((_, tree)), None, None) => items(tree, faults),
-        (None, Some((at, tree)), ordering) => {
-            let list = items(tree, faults);
-            match ordering {
-                Some((at, tree)) => sorted(at, tree, list, faults),
-                None => {
-                    if list.len() > 1 {
-                        partially_ordered(at, faults);
-                    }
-                    list
-                }
-            }
-        }
-        (None, None, _) => {
-            faults.add(
-                at,
-                "the method has no subtasks; write `:ordered-subtasks ()` if nothing is to be done",
-            );
-            return Vec::new();
-        }
+        (ordered, unordered) => ordered.or(unordered),
     };
+    let Some((at, tree)) = given else {
+        return Vec::new();
+    };
+    let list = sorted(at, ordered.is_some(), ordering, items(tree, faults), faults);
     list.into_iter()
         .filter_map(|subtask| scope.pattern(subtask.step, Sort::Step, faults))
         .collect()
@@ -99,10 +89,12 @@ fn subtask(tree: &Tree) -> Subtask<'_> {
     }
 }
 
-/// Puts subtasks into the order that `:ordering` gives, which must leave no choice.
+/// Puts subtasks into the order that `:ordering` gives, which must leave no choice unless they are
+/// `ordered` as they stand.
 fn sorted<'t>(
     at: usize,
-    ordering: &Tree,
+    ordered: bool,
+    ordering: Option<(usize, &'t Tree)>,
     subtasks: Vec<Subtask<'t>>,
     faults: &mut Faults,
 ) -> Vec<Subtask<'t>> {
@@ -117,8 +109,11 @@ fn sorted<'t>(
         }
     }
     let mut before = BTreeSet::new();
+    if ordered {
+        before.extend((1..subtasks.len()).map(|step| (step - 1, step)));
+    }
     let mut unreadable = false;
-    for pair in pairs(ordering) {
+    for pair in ordering.map(|(_, tree)| pairs(tree)).unwrap_or_default() {
         let Some(pair) = pair_of(pair, &ids, faults) else {
             unreadable = true;
             continue;
@@ -129,25 +124,31 @@ fn sorted<'t>(
         return subtasks;
     }
     // A total order has at each point exactly one subtask that may come next.
-    let mut left: BTreeSet<usize> = (0..subtasks.len()).collect();
+    let mut waits_for = vec![0; subtasks.len()];
+    for (_, step) in &before {
+        waits_for[*step] += 1;
+    }
+    let mut next: Vec<usize> = (0..subtasks.len())
+        .filter(|step| waits_for[*step] == 0)
+        .collect();
     let mut order = Vec::new();
-    while !left.is_empty() {
-        let waits = |step: usize| left.iter().any(|other| before.contains(&(*other, step)));
-        let next: Vec<usize> = left.iter().copied().filter(|step| !waits(*step)).collect();
-        match next.as_slice() {
-            [] => {
-                faults.add(at, "the ordering goes round in a circle");
-                return subtasks;
-            }
-            [next] => {
-                order.push(*next);
-                left.remove(next);
-            }
-            _ => {
-                partially_ordered(at, faults);
-                return subtasks;
+    while let Some(step) = next.pop() {
+        if !next.is_empty() {
+            partially_ordered(ordering.map_or(at, |(at, _)| at), faults);
+            return subtasks;
+        }
+        order.push(step);
+        for (_, after) in before.range((step, 0)..=(step, usize::MAX)) {
+            waits_for[*after] -= 1;
+            if waits_for[*after] == 0 {
+                next.push(*after);
             }
         }
+    }
+    if order.len() < subtasks.len() {
+        let at = ordering.map_or(at, |(at, _)| at);
+        faults.add(at, "the ordering goes round in a circle");
+        return subtasks;
     }
     let mut subtasks: Vec<Option<Subtask<'t>>> = subtasks.into_iter().map(Some).collect();
     order
@@ -164,16 +165,16 @@ fn pairs(ordering: &Tree) -> &[Tree] {
     }
 }
 
-/// `(< t1 t2)`, as indices of the subtasks.
+/// `(< t1 t2)` or `(t1 < t2)`, as indices of the subtasks.
 fn pair_of(tree: &Tree, ids: &[Option<&str>], faults: &mut Faults) -> Option<(usize, usize)> {
-    let Some([sign, first, second]) = tree.list() else {
-        faults.add(tree.at, format!("expected `(< t1 t2)`, found `{tree}`"));
-        return None;
+    let (first, second) = match tree.list() {
+        Some([sign, first, second]) if sign.word() == Some("<") => (first, second),
+        Some([first, sign, second]) if sign.word() == Some("<") => (first, second),
+        _ => {
+            faults.add(tree.at, format!("expected `(< t1 t2)`, found `{tree}`"));
+            return None;
+        }
     };
-    if sign.word() != Some("<") {
-        faults.add(tree.at, format!("expected `(< t1 t2)`, found `{tree}`"));
-        return None;
-    }
     let mut index = |tree: &Tree| {
         let found = ids.iter().position(|id| id.is_some() && *id == tree.word());
         if found.is_none() {

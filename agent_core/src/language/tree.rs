@@ -19,6 +19,11 @@ const SECTIONS: &[&str] = &[
     ":functions",
     ":method",
     ":action",
+    ":objects",
+    ":init",
+    ":goal",
+    ":htn",
+    ":metric",
 ];
 
 /// A word or a list.

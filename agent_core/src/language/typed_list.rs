@@ -3,6 +3,7 @@
 use super::error::Faults;
 use super::fit::type_is_declared;
 use super::near::hint;
+use super::number::decimal;
 use super::tree::Tree;
 use crate::model::{Domain, Parameter, Symbol};
 
@@ -15,7 +16,7 @@ pub(super) struct Typed<'t> {
 
 /// Words that mean something else wherever a name could stand.
 const RESERVED: &[&str] = &[
-    "and", "or", "not", "imply", "forall", "exists", "when", "increase", "object",
+    "and", "or", "not", "imply", "forall", "exists", "when", "increase",
 ];
 
 /// Pairs every name with the type that stands after its group.
@@ -38,12 +39,6 @@ pub(super) fn typed_list<'t>(items: &'t [Tree], faults: &mut Faults) -> Vec<Type
             faults.add(item.at, "a type must follow this `-`");
             break;
         };
-        if kind.head() == Some("either") {
-            faults.add(
-                kind.at,
-                "`either` is not supported yet; declare a type above both",
-            );
-        }
         for typed in &mut out[group..] {
             typed.kind = Some(kind);
         }
@@ -69,8 +64,8 @@ pub(super) fn name(tree: &Tree, what: &str, faults: &mut Faults) -> Option<Symbo
         faults.add(
             tree.at,
             format!(
-                "expected {what}, found `{word}`: a name begins with a letter and goes on with \
-                 letters, digits, `-` and `_`"
+                "expected {what}, found `{word}`: a name begins with a letter or a digit and goes on \
+                 with letters, digits, `-`, `_` and the like"
             ),
         );
         return None;
@@ -91,12 +86,14 @@ pub(super) fn variable(tree: &Tree, faults: &mut Faults) -> Option<Symbol> {
     None
 }
 
+/// Published problems call objects what they like, `4x4` and `a@b` among it.
 fn is_name(word: &str) -> bool {
-    let mut letters = word.chars();
-    letters
-        .next()
-        .is_some_and(|first| first.is_alphabetic() || first == '_')
-        && letters.all(|letter| letter.is_alphanumeric() || matches!(letter, '-' | '_' | '.'))
+    let begins = |first: char| first.is_alphanumeric() || first == '_';
+    word.starts_with(begins)
+        && decimal(word).is_none()
+        && word
+            .chars()
+            .all(|letter| letter.is_alphanumeric() || "-_.@#$%&*+/!~^|,'[]{}<>=:".contains(letter))
 }
 
 /// The type of a name: `object` if none is written. With a domain, it must be declared there.
@@ -105,14 +102,34 @@ pub(super) fn kind_of(
     domain: Option<&Domain>,
     faults: &mut Faults,
 ) -> Option<Symbol> {
-    let Some(tree) = typed.kind else {
-        return Some(Symbol::from("object"));
-    };
+    match typed.kind {
+        Some(tree) => kind_named(tree, domain, faults),
+        None => Some(Symbol::from("object")),
+    }
+}
+
+/// The type that is written: a name, or `(either …)` of several.
+pub(super) fn kind_named(
+    tree: &Tree,
+    domain: Option<&Domain>,
+    faults: &mut Faults,
+) -> Option<Symbol> {
     if tree.word() == Some("object") {
         return Some(Symbol::from("object"));
     }
-    if tree.head() == Some("either") {
-        return None; // already a fault
+    if let Some((union, members)) = either(tree) {
+        for member in tree.list().into_iter().flatten().skip(1) {
+            kind_named(member, domain, faults);
+        }
+        if let [only] = members.as_slice() {
+            return Some(only.clone());
+        }
+        if domain.is_some_and(|domain| !domain.unions.contains_key(&union)) {
+            let message =
+                format!("`{union}` is not used in the domain; declare a type above these");
+            faults.add(tree.at, message);
+        }
+        return Some(union);
     }
     let kind = name(tree, "a type", faults)?;
     if let Some(domain) = domain.filter(|domain| !type_is_declared(domain, &kind)) {
@@ -124,6 +141,23 @@ pub(super) fn kind_of(
         faults.add(tree.at, format!("type `{kind}` is not declared{hint}"));
     }
     Some(kind)
+}
+
+/// The name and the members of a union of types: `(either room door)`.
+pub(super) fn either(tree: &Tree) -> Option<(Symbol, Vec<Symbol>)> {
+    let (head, members) = tree.list()?.split_first()?;
+    if head.word() != Some("either") || members.is_empty() {
+        return None;
+    }
+    let words: Option<Vec<&str>> = members.iter().map(Tree::word).collect();
+    let mut words = words?;
+    words.sort_unstable();
+    words.dedup();
+    let name = format!("(either {})", words.join(" "));
+    Some((
+        Symbol::from(name),
+        words.into_iter().map(Symbol::from).collect(),
+    ))
 }
 
 /// Reads parameters: `?from ?to - area ?d - door`. With a domain, their types must be declared.

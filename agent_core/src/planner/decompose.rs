@@ -39,7 +39,7 @@ pub(super) fn successors(
     }
     let mut found = Vec::new();
     for method in &problem.domain.methods {
-        let Some(bindings) = bind_head(method, task) else {
+        let Some(bindings) = bind_head(problem, method, task) else {
             continue;
         };
         let frame = Arc::new(Frame {
@@ -75,9 +75,9 @@ pub(super) fn successors(
 }
 
 /// The method's parameters as far as the task's arguments bind them; `None` if the method does
-/// not do this task.
-fn bind_head(method: &Method, task: &Task) -> Option<Bindings> {
-    if method.task.name != task.name {
+/// not do this task: one whose variables are of narrower types than the task's is for these only.
+fn bind_head(problem: &Problem, method: &Method, task: &Task) -> Option<Bindings> {
+    if method.task.name != task.name || method.task.args.len() != task.args.len() {
         return None;
     }
     let mut bindings: Bindings = vec![None; method.parameters.len()];
@@ -87,7 +87,9 @@ fn bind_head(method: &Method, task: &Task) -> Option<Bindings> {
             Term::Constant(_) => {}
             Term::Variable(index) => match &bindings[*index] {
                 Some(bound) if bound != arg => return None,
-                _ => bindings[*index] = Some(arg.clone()),
+                Some(_) => {}
+                None if !problem.fits(arg, &method.parameters[*index].kind) => return None,
+                None => bindings[*index] = Some(arg.clone()),
             },
         }
     }
