@@ -3,6 +3,7 @@
 mod cost;
 mod decompose;
 mod estimate;
+pub mod invariants;
 mod matching;
 mod naive;
 mod network;

@@ -128,12 +128,7 @@ impl<'a> View<'a> {
         if !holds {
             when.insert(0, Clause::Fact(true, change.fact.clone()));
         }
-        // The types of what is bound already are not asked for.
-        let any = |_: &Option<Symbol>| Parameter {
-            name: Symbol::from(""),
-            kind: Symbol::from("object"),
-        };
-        let mut parameters: Vec<Parameter> = bindings.iter().map(any).collect();
+        let mut parameters = of_any_type(bindings);
         parameters.extend(change.over.iter().cloned());
         let mut all = bindings.to_vec();
         all.resize(parameters.len(), None);
@@ -185,7 +180,7 @@ impl<'a> View<'a> {
                     let mut holds = false;
                     for_each_binding(
                         *self,
-                        &[],
+                        &of_any_type(bindings),
                         std::slice::from_ref(clause),
                         bindings.to_vec(),
                         &mut BTreeSet::new(),
@@ -199,6 +194,16 @@ impl<'a> View<'a> {
         }
         Ok(())
     }
+}
+
+/// Parameters in whose place stand `bindings`, so that variables of quantifiers are numbered on from
+/// there. The types of what is bound already are not asked for.
+fn of_any_type(bindings: &[Option<Symbol>]) -> Vec<Parameter> {
+    let any = |_: &Option<Symbol>| Parameter {
+        name: Symbol::from(""),
+        kind: Symbol::from("object"),
+    };
+    bindings.iter().map(any).collect()
 }
 
 /// The arguments of an atom as bindings of the parameters of its declaration.
