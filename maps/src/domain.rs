@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use agent_core::language::parse_domain_strictly;
+use agent_core::language::{LanguageError, excerpt, parse_domain_strictly};
 use agent_core::model::{Domain, ExecutionModel, Symbol};
 
 use crate::Finding;
-use crate::execution_model::{line_and_column, read_model};
+use crate::execution_model::{place_of, read_model};
 
 /// What one agent plans with. Whoever has one knows that it was checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +46,8 @@ pub fn level_from_texts(
     toml: &str,
     [hddl_name, toml_name]: [&str; 2],
 ) -> Result<Level, Vec<Finding>> {
-    let domain = parse_domain_strictly(hddl).map_err(|errors| language_findings(hddl_name, errors));
+    let domain =
+        parse_domain_strictly(hddl).map_err(|errors| language_findings(hddl_name, hddl, errors));
     let model = read_model(toml_name, toml, domain.as_ref().ok());
     match (domain, model) {
         (Ok(domain), Ok(model)) => Ok(Level { domain, model }),
@@ -114,24 +115,28 @@ fn unexecuted(file: &Path, level: &Level, others: &[&Domain]) -> Vec<Finding> {
                      model"
                 .to_owned(),
         };
+        let at = place_of_action(&text, name);
         findings.push(Finding {
             file: file.display().to_string(),
-            place: place_of_action(&text, name),
+            place: at.map_or_else(String::new, |(line, column)| format!("{line}:{column}")),
             message: format!("nobody can execute action `{name}`: {hint}"),
+            excerpt: at
+                .and_then(|(line, column)| excerpt(&text, line, column))
+                .unwrap_or_default(),
         });
     }
     findings
 }
 
 /// Where an action is declared.
-fn place_of_action(text: &str, name: &Symbol) -> String {
+fn place_of_action(text: &str, name: &Symbol) -> Option<(usize, usize)> {
     let keyword = "(:action";
     let text = text.to_ascii_lowercase();
     let found = text.match_indices(keyword).find(|(at, _)| {
         let after = text[at + keyword.len()..].split_whitespace().next();
         after.is_some_and(|word| *name == *word.trim_end_matches(')'))
     });
-    found.map_or_else(String::new, |(at, _)| line_and_column(&text, at))
+    found.map(|(at, _)| place_of(&text, at))
 }
 
 /// The levels of a directory, by the names of their domains, in order.
@@ -140,6 +145,7 @@ fn level_names(dir: &Path) -> Result<Vec<String>, Finding> {
         file: dir.display().to_string(),
         place: String::new(),
         message,
+        excerpt: String::new(),
     };
     let unreadable = |error: std::io::Error| finding(format!("cannot be read: {error}"));
     let mut names = Vec::new();
@@ -179,21 +185,23 @@ fn read_text(path: &Path) -> Result<String, Finding> {
             file: path.display().to_string(),
             place: String::new(),
             message,
+            excerpt: String::new(),
         }
     })
 }
 
 fn domain_findings(file: &Path, text: &str) -> Vec<Finding> {
     let errors = parse_domain_strictly(text).err().unwrap_or_default();
-    language_findings(&file.display().to_string(), errors)
+    language_findings(&file.display().to_string(), text, errors)
 }
 
-fn language_findings(file: &str, errors: Vec<agent_core::language::LanguageError>) -> Vec<Finding> {
+fn language_findings(file: &str, text: &str, errors: Vec<LanguageError>) -> Vec<Finding> {
     errors
         .into_iter()
         .map(|error| Finding {
             file: file.to_owned(),
             place: format!("{}:{}", error.line, error.column),
+            excerpt: excerpt(text, error.line, error.column).unwrap_or_default(),
             message: error.message,
         })
         .collect()

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use agent_core::language::{
-    LanguageError, check_model, nearest, parse_effects, parse_literal, parse_number,
+    LanguageError, check_model, excerpt, nearest, parse_effects, parse_literal, parse_number,
     parse_parameter, parse_pattern,
 };
 use agent_core::model::{
@@ -127,13 +127,13 @@ pub(crate) fn read_model(
     Err(findings.collect())
 }
 
-/// The line and the column of a byte, as in `12:5`.
-pub(crate) fn line_and_column(text: &str, at: usize) -> String {
+/// The line and the column of a byte, counted from 1.
+pub(crate) fn place_of(text: &str, at: usize) -> (usize, usize) {
     let before = text.get(..at).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
     let line = before.matches('\n').count() + 1;
     let column = before[line_start..].chars().count() + 1;
-    format!("{line}:{column}")
+    (line, column)
 }
 
 /// Reads entry by entry; what cannot be read is a finding and is left out.
@@ -148,10 +148,12 @@ struct Reader<'t> {
 
 impl Reader<'_> {
     fn fault(&mut self, at: usize, key: &str, message: &str) {
+        let (line, column) = place_of(self.text, at);
         let finding = Finding {
             file: self.file.to_owned(),
-            place: line_and_column(self.text, at),
+            place: format!("{line}:{column}"),
             message: format!("{key}: {message}"),
+            excerpt: excerpt(self.text, line, column).unwrap_or_default(),
         };
         self.findings.push((at, finding));
     }

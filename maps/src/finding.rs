@@ -11,6 +11,9 @@ pub struct Finding {
     pub place: String,
     /// What is wrong.
     pub message: String,
+    /// The line of the text and a marker under the place, to be shown below. Empty if there is
+    /// none.
+    pub excerpt: String,
 }
 
 impl fmt::Display for Finding {
@@ -19,6 +22,10 @@ impl fmt::Display for Finding {
         if !self.place.is_empty() {
             write!(f, "{}:", self.place)?;
         }
-        write!(f, " {}", self.message)
+        write!(f, " {}", self.message)?;
+        if !self.excerpt.is_empty() {
+            write!(f, "\n{}", self.excerpt)?;
+        }
+        Ok(())
     }
 }

@@ -164,6 +164,7 @@ fn unspoken(
             file: file.to_owned(),
             place: String::new(),
             message,
+            excerpt: String::new(),
         })
         .collect()
 }

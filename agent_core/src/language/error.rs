@@ -12,18 +12,8 @@ pub struct LanguageError {
     pub message: String,
 }
 
-impl LanguageError {
-    /// A fault at a byte of `text`.
-    pub(super) fn at(text: &str, offset: usize, message: String) -> Self {
-        let before = text.get(..offset).unwrap_or(text);
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        Self {
-            line: before.matches('\n').count() + 1,
-            column: before[line_start..].chars().count() + 1,
-            message,
-        }
-    }
-}
+/// More faults than anyone reads at once. What is read after so many is not looked at.
+const ENOUGH: usize = 1000;
 
 /// The faults found so far; reading goes on after one, so that all are reported at once.
 #[derive(Debug, Default)]
@@ -41,7 +31,9 @@ impl Faults {
     /// Notes what has a meaning, but is probably not what was meant: a fault only for those who
     /// read strictly.
     pub(super) fn slip(&mut self, offset: usize, message: impl Into<String>) {
-        self.slips.push((offset, message.into()));
+        if self.slips.len() < ENOUGH {
+            self.slips.push((offset, message.into()));
+        }
     }
 
     /// Makes faults of all slips.
@@ -53,13 +45,47 @@ impl Faults {
         self.faults.is_empty()
     }
 
+    /// Whether so much is wrong that it is not worth while to look for more.
+    pub(super) fn is_enough(&self) -> bool {
+        self.faults.len() >= ENOUGH
+    }
+
     /// The faults in the order of the text.
     pub(super) fn into_errors(mut self, text: &str) -> Vec<LanguageError> {
         self.faults.sort();
         self.faults.dedup();
+        let mut place = Place { line: 1, start: 0 };
         self.faults
             .into_iter()
-            .map(|(offset, message)| LanguageError::at(text, offset, message))
+            .map(|(offset, message)| {
+                let column = place.go_on(text, offset);
+                LanguageError {
+                    line: place.line,
+                    column,
+                    message,
+                }
+            })
             .collect()
+    }
+}
+
+/// A line of a text.
+struct Place {
+    /// Counted from 1.
+    line: usize,
+    /// The byte at which it begins.
+    start: usize,
+}
+
+impl Place {
+    /// Goes on to the line of a later byte and says in which column that is.
+    fn go_on(&mut self, text: &str, offset: usize) -> usize {
+        let passed = text.get(self.start..offset).unwrap_or_default();
+        if let Some(last) = passed.rfind('\n') {
+            self.line += passed.matches('\n').count();
+            self.start += last + 1;
+        }
+        let before = text.get(self.start..offset).unwrap_or_default();
+        before.chars().count() + 1
     }
 }

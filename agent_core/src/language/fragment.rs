@@ -176,6 +176,10 @@ fn finish<T>(text: &str, faults: Faults, value: Option<T>) -> Result<T, Language
     match (faults.into_errors(text).into_iter().next(), value) {
         (None, Some(value)) => Ok(value),
         (Some(fault), _) => Err(fault),
-        (None, None) => Err(LanguageError::at(text, 0, "this is empty".to_owned())),
+        (None, None) => Err(LanguageError {
+            line: 1,
+            column: 1,
+            message: "this is empty".to_owned(),
+        }),
     }
 }

@@ -9,6 +9,7 @@ mod condition;
 mod domain;
 mod effect;
 mod error;
+mod excerpt;
 mod expression;
 mod fields;
 mod fit;
@@ -19,6 +20,7 @@ mod near;
 mod number;
 mod problem;
 mod section;
+mod spelling;
 mod subtasks;
 mod tree;
 mod typed_list;
@@ -31,6 +33,7 @@ mod tests;
 pub use check::{DomainError, Truth, check_model};
 pub use domain::{parse_domain, parse_domain_strictly};
 pub use error::LanguageError;
+pub use excerpt::{excerpt, report};
 pub use fit::{Misfit, Sort};
 pub use fragment::{
     parse_atom, parse_effects, parse_fact_change, parse_literal, parse_number, parse_parameter,
@@ -38,3 +41,4 @@ pub use fragment::{
 };
 pub use near::nearest;
 pub use problem::parse_problem;
+pub use spelling::Spelling;

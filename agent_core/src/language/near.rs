@@ -1,5 +1,8 @@
 //! What a misspelt name was probably meant to be.
 
+/// Among more names than these nobody's slip is looked for.
+const ENOUGH: usize = 2000;
+
 /// The name most like `name`, if one is so much alike that it may have been meant.
 pub fn nearest<'a>(name: &str, among: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // Nobody's slip of the pen is that long, and the distance takes the product of both lengths.
@@ -10,6 +13,7 @@ pub fn nearest<'a>(name: &str, among: impl IntoIterator<Item = &'a str>) -> Opti
     let allowed = (name.chars().count() / 3).min(3);
     among
         .into_iter()
+        .take(ENOUGH)
         .filter(|other| other.len().abs_diff(name.len()) <= 4 * allowed)
         .map(|other| (distance(name, other), other))
         .filter(|(distance, _)| *distance <= allowed)

@@ -132,6 +132,9 @@ impl Reader {
         };
         let mut init = Belief::default();
         for item in items {
+            if self.faults.is_enough() {
+                break;
+            }
             for tree in conjuncts(item) {
                 if let Some(change) = initial(tree, &scope, &mut self.faults) {
                     init.apply(&change);

@@ -37,7 +37,7 @@ pub(super) struct Tree {
 /// What a [`Tree`] is.
 #[derive(Clone, Debug)]
 pub(super) enum Kind {
-    /// In lower case, as HDDL does not tell upper from lower.
+    /// In lower case as a rule, as HDDL does not tell upper from lower.
     Word(String),
     /// What stands between two parentheses.
     List(Vec<Tree>),
@@ -96,8 +96,18 @@ impl fmt::Display for Tree {
     }
 }
 
-/// Reads all trees of a text. What cannot be nested properly is a fault.
+/// Reads all trees of a text, their words in lower case. What cannot be nested properly is a
+/// fault.
 pub(super) fn read(text: &str, faults: &mut Faults) -> Vec<Tree> {
+    read_with(text, str::to_lowercase, faults)
+}
+
+/// Reads all trees of a text, their words as they are written.
+pub(super) fn read_as_written(text: &str, faults: &mut Faults) -> Vec<Tree> {
+    read_with(text, str::to_owned, faults)
+}
+
+fn read_with(text: &str, fold: fn(&str) -> String, faults: &mut Faults) -> Vec<Tree> {
     // The lists that are open, outermost first, and on the bottom what stands in none.
     let mut open: Vec<(usize, Vec<Tree>)> = Vec::new();
     let mut done = Vec::new();
@@ -117,7 +127,12 @@ pub(super) fn read(text: &str, faults: &mut Faults) -> Vec<Tree> {
                 ),
             },
             Ok(Token::Word) | Err(()) => {
-                let word = text.get(span).unwrap_or_default().to_lowercase();
+                let (sign, rest) = split(text.get(span).unwrap_or_default());
+                if !sign.is_empty() {
+                    let kind = Kind::Word(sign.to_owned());
+                    append(&mut open, &mut done, at, kind);
+                }
+                let (at, word) = (at + sign.len(), fold(rest));
                 let begins = open.last().is_some_and(|(_, items)| items.is_empty());
                 if begins && open.len() > 2 && SECTIONS.contains(&word.as_str()) {
                     close_section(&mut open, &mut done, &word, faults);
@@ -133,6 +148,16 @@ pub(super) fn read(text: &str, faults: &mut Faults) -> Vec<Tree> {
         append(&mut open, &mut done, at, Kind::List(items));
     }
     done
+}
+
+/// Some write `(?x -room)` and `(=?x ?y)`: a sign before a name or a variable is a word of its own.
+fn split(word: &str) -> (&str, &str) {
+    match word.as_bytes() {
+        [b'-' | b'=' | b'<', next, ..] if next.is_ascii_alphabetic() || *next == b'?' => {
+            word.split_at(1)
+        }
+        _ => ("", word),
+    }
 }
 
 fn append(open: &mut [(usize, Vec<Tree>)], done: &mut Vec<Tree>, at: usize, kind: Kind) {

@@ -89,6 +89,7 @@ impl Reader<'_> {
             file: self.file.to_owned(),
             place,
             message: message.into(),
+            excerpt: String::new(),
         });
     }
 

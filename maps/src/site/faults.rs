@@ -45,6 +45,7 @@ impl Faults {
                     line.to_string()
                 },
                 message,
+                excerpt: String::new(),
             })
             .collect()
     }

@@ -3,6 +3,7 @@
 
 use super::*;
 mod problems;
+mod reports;
 use crate::model::{
     Change, Clause, Condition, Domain, Effect, FactChange, Number, Parameter, Pattern, Symbol, Term,
 };
@@ -111,6 +112,15 @@ fn capitals_and_comments_make_no_difference() {
         .to_uppercase()
         .replace("(:ACTION", "; (never read\n(:ACTION");
     assert_eq!(parse_domain(&shouted).unwrap(), small());
+}
+
+#[test]
+fn a_sign_may_stand_next_to_a_name() {
+    let glued = SMALL
+        .replace("(?r - room) :task", "(?r -room) :task")
+        .replace("(= ?a ?r)", "(=?a ?r)");
+    assert_ne!(glued, SMALL);
+    assert_eq!(parse_domain(&glued).unwrap(), small());
 }
 
 #[test]
