@@ -6,10 +6,12 @@
 //! those of `:htn`, its precondition the constraints, and its last subtask an artificial action
 //! without effects whose precondition is the goal.
 
+mod changes;
 mod condition;
 mod cost;
 mod ids;
 mod kinds;
+mod necessary;
 mod prune;
 mod read;
 
@@ -107,6 +109,10 @@ pub struct Method {
     pub kinds: Vec<KindId>,
     /// When it can be used.
     pub precondition: Condition,
+    /// What else must hold when it is used, or it cannot be carried through: conditions of its
+    /// subtasks that nothing before them can bring about. To look at them is never wrong, and
+    /// never needed.
+    pub necessary: Condition,
     /// What is to be done instead, in this order.
     pub subtasks: Vec<Subtask>,
 }
@@ -137,6 +143,7 @@ impl Compiled {
     pub fn new(domain: &Domain, instance: &Instance) -> Result<Self, Unfit> {
         let mut compiled = read::read(domain, instance)?;
         prune::prune(&mut compiled);
+        necessary::find(&mut compiled);
         Ok(compiled)
     }
 

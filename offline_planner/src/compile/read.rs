@@ -128,6 +128,7 @@ impl<'a> Reader<'a> {
                 head: self.terms(&method.task, scope)?,
                 kinds: self.kinds_of(&method.parameters),
                 precondition: self.condition(&method.name, &method.precondition, scope)?,
+                necessary: Condition::new(),
                 subtasks: self.subtasks(&method.subtasks, scope)?,
             });
         }
@@ -190,6 +191,7 @@ impl<'a> Reader<'a> {
             head: Vec::new(),
             kinds,
             precondition: self.condition(&name, &instance.constraints, scope)?,
+            necessary: Condition::new(),
             subtasks,
         });
         tasks.push(Task {
