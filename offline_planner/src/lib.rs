@@ -5,6 +5,7 @@
 
 pub mod compile;
 mod control;
+mod depth_first;
 pub mod plan;
 mod solve;
 

@@ -1,0 +1,14 @@
+//! Depth-first search: the methods and bindings in order, the first that works.
+//!
+//! Nothing is grounded. The state is changed in place and taken back on the way up; what has been
+//! tried in a state with a list of tasks is not tried again.
+
+mod facts;
+mod hash;
+mod order;
+mod program;
+mod query;
+mod search;
+mod table;
+
+pub use search::DepthFirst;
