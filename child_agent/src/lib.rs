@@ -42,7 +42,7 @@ pub fn configuration(
         domain: Arc::new(level.domain.clone()),
         model: Arc::new(level.model.clone()),
         map: Map::default(),
-        maps_below: Default::default(),
+        maps_below: Arc::new(()),
         facts: facts.into_iter().map(FactChange::Add).collect(),
         executors: Executors::one(executor),
         policy: Policy::default(),

@@ -12,7 +12,9 @@ mod vocabulary;
 
 pub use domain::{Level, check_domain_dir, level_from_texts, read_level};
 pub use finding::Finding;
-pub use levels::{area_level, area_maps, area_start, node_level, node_start, whole_node_level};
+pub use levels::{
+    AreaMaps, area_level, area_maps, area_start, node_level, node_start, whole_node_level,
+};
 pub use place::{NotInOrder, Place};
 pub use scaled::{MOST_NODES, scaled_map};
 pub use site::{Area, Door, Node, Passage, Route, Site, Summary, check_map};

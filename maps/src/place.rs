@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
 use agent_core::model::Map;
 
 use crate::vocabulary::missing_words;
-use crate::{Finding, Level, Site, area_level, area_maps, level_from_texts, museum, read_level};
+use crate::{Finding, Level, Site, area_level, level_from_texts, museum, node_level, read_level};
 
 /// All that is wrong with a place, a finding a line.
 #[derive(Clone, Debug, Eq, PartialEq, thiserror::Error)]
@@ -25,7 +26,7 @@ fn lines(findings: &[Finding]) -> String {
 #[derive(Clone, Debug)]
 pub struct Place {
     name: String,
-    site: Site,
+    site: Arc<Site>,
     area: Level,
     node: Level,
 }
@@ -90,9 +91,11 @@ impl Place {
     ) -> Result<Self, Vec<Finding>> {
         let mut findings = Vec::new();
         if let Ok(site) = &site {
-            findings.extend(unspoken(area_file, &area, || vec![area_level(site)]));
-            let maps = || area_maps(site).into_values().collect();
-            findings.extend(unspoken(node_file, &node, maps));
+            let whole = std::iter::once_with(|| area_level(site));
+            findings.extend(unspoken(area_file, &area, whole));
+            let areas = site.areas().map(|area| area.name().as_str());
+            let parts = areas.filter_map(|area| node_level(site, area));
+            findings.extend(unspoken(node_file, &node, parts));
         }
         match (site, area, node) {
             (Ok(site), Ok(area), Ok(node)) if findings.is_empty() => Ok(Self {
@@ -102,7 +105,7 @@ impl Place {
                     site.name()
                 }
                 .to_owned(),
-                site,
+                site: Arc::new(site),
                 area,
                 node,
             }),
@@ -120,7 +123,7 @@ impl Place {
     }
 
     /// Its map.
-    pub fn site(&self) -> &Site {
+    pub fn site(&self) -> &Arc<Site> {
         &self.site
     }
 
@@ -148,15 +151,12 @@ impl Place {
 fn unspoken(
     file: &str,
     level: &Result<Level, Vec<Finding>>,
-    maps: impl FnOnce() -> Vec<Map>,
+    maps: impl Iterator<Item = Map>,
 ) -> Vec<Finding> {
     let Ok(level) = level else {
         return Vec::new();
     };
-    let maps = maps();
-    let missing = maps
-        .iter()
-        .flat_map(|map| missing_words(&level.domain, map));
+    let missing = maps.flat_map(|map| missing_words(&level.domain, &map));
     let missing: BTreeSet<String> = missing.collect();
     missing
         .into_iter()
@@ -172,6 +172,7 @@ fn unspoken(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::area_maps;
 
     fn museum_with(area_domain: &str, node_domain: &str) -> Result<Place, Vec<Finding>> {
         Place::from_parts(

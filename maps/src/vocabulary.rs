@@ -23,6 +23,19 @@ pub(crate) fn missing_words(domain: &Domain, map: &Map) -> Vec<String> {
     for (function, _) in map.facts.values() {
         missing.extend(misfit("function", &domain.functions, function, domain, map));
     }
+    let unlisted = map
+        .facts
+        .landmarks()
+        .filter_map(|landmarks| landmarks.example());
+    for function in unlisted {
+        missing.extend(misfit(
+            "function",
+            &domain.functions,
+            &function,
+            domain,
+            map,
+        ));
+    }
     missing.into_iter().collect()
 }
 
@@ -43,13 +56,14 @@ fn misfit(
             && (parameters.iter().zip(&kinds))
                 .all(|(parameter, kind)| domain.is_a(kind, &parameter.kind))
     });
-    let kinds: Vec<&str> = kinds.into_iter().map(Symbol::as_str).collect();
-    let needed = format!(
-        "the map needs the {what} ({} {})",
-        fact.name,
-        kinds.join(" ")
-    );
-    (!fits).then_some(needed)
+    (!fits).then(|| {
+        let kinds: Vec<&str> = kinds.into_iter().map(Symbol::as_str).collect();
+        format!(
+            "the map needs the {what} ({} {})",
+            fact.name,
+            kinds.join(" ")
+        )
+    })
 }
 
 #[cfg(test)]
@@ -57,7 +71,7 @@ mod tests {
     use agent_core::language::parse_domain;
 
     use super::*;
-    use crate::{Site, area_level, museum};
+    use crate::{Site, area_level, museum, scaled_map};
 
     fn missing(change: impl FnOnce(&mut Domain)) -> Vec<String> {
         let site = Site::from_text("map.geojson", museum::MAP).expect("sound");
@@ -85,6 +99,18 @@ mod tests {
                 "the map needs the predicate (located node area)",
                 "the map needs the type door",
             ]
+        );
+    }
+
+    #[test]
+    fn distances_that_are_too_many_to_list_need_a_word_too() {
+        let site = Site::from_text("scaled", &scaled_map(1000, 1)).expect("sound");
+        let mut domain = parse_domain(museum::AREA_DOMAIN).expect("in order");
+        assert_eq!(missing_words(&domain, &area_level(&site)), [""; 0]);
+        domain.functions.remove("distance");
+        assert_eq!(
+            missing_words(&domain, &area_level(&site)),
+            ["the map needs the function (distance area node)"]
         );
     }
 

@@ -34,7 +34,7 @@ pub enum SetupError {
 /// `wings`: the child agents that are in charge of certain areas only, by area; every other area
 /// is the business of `child`.
 pub fn configuration(
-    site: &Site,
+    site: &Arc<Site>,
     level: &Level,
     start: &str,
     child: &str,
@@ -52,7 +52,7 @@ pub fn configuration(
         domain: Arc::new(level.domain.clone()),
         model: Arc::new(level.model.clone()),
         map: maps::area_level(site),
-        maps_below: maps::area_maps(site),
+        maps_below: Arc::new(maps::AreaMaps::of(site.clone())),
         facts: facts.into_iter().map(FactChange::Add).collect(),
         executors: Executors {
             default: Symbol::from(child),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use agent_core::agent::{Agent, Configuration};
 use agent_core::model::Symbol;
@@ -14,7 +15,7 @@ use crate::{Stack, Wire};
 /// The museum, read once, to build stacks from.
 pub struct Museum {
     /// Its map.
-    pub site: Site,
+    pub site: Arc<Site>,
     /// Area level.
     pub area: Level,
     /// Node level.
@@ -25,7 +26,9 @@ pub struct Museum {
 pub fn museum() -> Museum {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../maps/museum");
     Museum {
-        site: Site::read(folder.join("map.geojson")).expect("the museum's map is in order"),
+        site: Arc::new(
+            Site::read(folder.join("map.geojson")).expect("the museum's map is in order"),
+        ),
         area: maps::read_level(&folder, "area").expect("the area level is in order"),
         node: maps::read_level(&folder, "node").expect("the node level is in order"),
     }
@@ -59,7 +62,7 @@ impl Museum {
         SimulatedRobot::new(
             &level.domain,
             &level.model,
-            Floor::try_from(&self.site).expect("the museum is a floor"),
+            Floor::try_from(&*self.site).expect("the museum is a floor"),
             MoverSpec::default(),
             Place::at(start),
             faults,

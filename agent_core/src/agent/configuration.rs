@@ -1,6 +1,7 @@
 //! What an agent is made with.
 
 use std::collections::BTreeMap;
+use std::fmt::Debug;
 use std::sync::Arc;
 
 use crate::model::{Domain, ExecutionModel, FactChange, Map, Symbol};
@@ -19,14 +20,28 @@ pub struct Configuration {
     /// What it knows of its surroundings itself. A child agent has an empty one and is given a
     /// map with each instruction.
     pub map: Map,
-    /// The maps that it hands down, by the place that they show.
-    pub maps_below: BTreeMap<Symbol, Map>,
+    /// The maps that it hands down.
+    pub maps_below: Arc<dyn MapsBelow>,
     /// What it holds to be true at the start.
     pub facts: Vec<FactChange>,
     /// Who executes its actions.
     pub executors: Executors,
     /// How it behaves.
     pub policy: Policy,
+}
+
+/// The maps that an agent hands down with its instructions: made when they are asked for, as there
+/// can be twenty thousand of them.
+pub trait MapsBelow: Debug + Send + Sync {
+    /// The map that shows a place; `None` if there is none.
+    fn map_of(&self, place: &Symbol) -> Option<Map>;
+}
+
+/// For an agent that hands down no maps.
+impl MapsBelow for () {
+    fn map_of(&self, _: &Symbol) -> Option<Map> {
+        None
+    }
 }
 
 /// Who executes which actions.

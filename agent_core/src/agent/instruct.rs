@@ -60,11 +60,7 @@ impl<P: Planner> Agent<P> {
 
     /// The map that goes with a step, with what is believed now of things in it that change.
     pub(super) fn map_for(&self, step: &Step) -> Option<Map> {
-        let mut map = self
-            .configuration
-            .maps_below
-            .get(self.place_of(step)?)?
-            .clone();
+        let mut map = self.configuration.maps_below.map_of(self.place_of(step)?)?;
         // What the map says of changing things was true once; what is believed now goes instead.
         let observable = &self.configuration.model.observable;
         map.take_changing(observable);

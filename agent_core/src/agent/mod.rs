@@ -21,7 +21,7 @@ mod suspension;
 mod waiting;
 
 pub use aside::{GoalsAside, WaitsFor};
-pub use configuration::{Configuration, Executors, Policy};
+pub use configuration::{Configuration, Executors, MapsBelow, Policy};
 pub use goal::Goal;
 pub use intention::{Intention, Record};
 pub use stack::{ResumedBy, SuspendedGoal, SuspendedGoalStack};

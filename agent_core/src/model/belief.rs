@@ -1,11 +1,13 @@
 //! What an agent holds to be true.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::Arc;
 
+use rpds::RedBlackTreeSetSync;
 use serde::{Deserialize, Serialize};
 
-use super::{Fact, Symbol};
+use super::{Fact, Landmarks, Symbol};
 
 /// One change of a belief: what facts, reports and observations are made of.
 #[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
@@ -29,21 +31,37 @@ impl fmt::Display for FactChange {
 }
 
 /// Facts that hold and functions that have a value; everything else is false or undefined.
+///
+/// A copy shares what is the same, so that copying costs next to nothing, however much is believed,
+/// and a change of the copy costs as little as the change.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Belief {
-    facts: BTreeSet<Fact>,
+    facts: RedBlackTreeSetSync<Fact>,
     #[serde(with = "values_as_list")]
-    values: BTreeMap<Fact, f64>,
+    values: Arc<BTreeMap<Fact, f64>>,
+    /// Functions whose values are too many to list.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    landmarks: Vec<Arc<Landmarks>>,
 }
 
 impl Belief {
     /// Applies one change and says whether anything is different now.
     pub fn apply(&mut self, change: &FactChange) -> bool {
         match change {
-            FactChange::Add(fact) => self.facts.insert(fact.clone()),
-            FactChange::Remove(fact) => self.facts.remove(fact),
+            FactChange::Add(fact) => {
+                let is_new = !self.facts.contains(fact);
+                if is_new {
+                    self.facts.insert_mut(fact.clone());
+                }
+                is_new
+            }
+            FactChange::Remove(fact) => self.facts.remove_mut(fact),
             FactChange::Set(function, value) => {
-                self.values.insert(function.clone(), *value) != Some(*value)
+                let is_new = self.values.get(function) != Some(value);
+                if is_new {
+                    Arc::make_mut(&mut self.values).insert(function.clone(), *value);
+                }
+                is_new
             }
         }
     }
@@ -64,7 +82,31 @@ impl Belief {
 
     /// The function's value, if it has one.
     pub fn value(&self, function: &Fact) -> Option<f64> {
-        self.values.get(function).copied()
+        let bound = || self.landmarks.iter().find_map(|all| all.value(function));
+        self.values.get(function).copied().or_else(bound)
+    }
+
+    /// Adds a function whose values are not listed. A value that is set counts before it.
+    pub fn add_landmarks(&mut self, landmarks: Landmarks) {
+        self.landmarks.push(Arc::new(landmarks));
+    }
+
+    /// The functions whose values are not listed.
+    pub fn landmarks(&self) -> impl Iterator<Item = &Landmarks> {
+        self.landmarks.iter().map(AsRef::as_ref)
+    }
+
+    /// Takes out the facts of these predicates.
+    pub fn take_facts_of(&mut self, predicates: &[Symbol]) -> Vec<Fact> {
+        let taken: Vec<Fact> = predicates
+            .iter()
+            .flat_map(|predicate| self.with_prefix(predicate, &[]))
+            .cloned()
+            .collect();
+        for fact in &taken {
+            self.facts.remove_mut(fact);
+        }
+        taken
     }
 
     /// All facts, in order.
@@ -72,7 +114,7 @@ impl Belief {
         self.facts.iter()
     }
 
-    /// All functions with their values, in order.
+    /// All functions that have been given a value, with their values, in order.
     pub fn values(&self) -> impl Iterator<Item = (&Fact, f64)> {
         self.values
             .iter()
@@ -100,21 +142,41 @@ impl FromIterator<Fact> for Belief {
     fn from_iter<I: IntoIterator<Item = Fact>>(facts: I) -> Self {
         Self {
             facts: facts.into_iter().collect(),
-            values: BTreeMap::new(),
+            ..Self::default()
         }
+    }
+}
+
+impl FromIterator<FactChange> for Belief {
+    /// What holds after all of the changes, in any number.
+    fn from_iter<I: IntoIterator<Item = FactChange>>(changes: I) -> Self {
+        let mut belief = Self::default();
+        let mut values = Vec::new();
+        for change in changes {
+            match change {
+                FactChange::Set(function, value) => values.push((function, value)),
+                other => {
+                    belief.apply(&other);
+                }
+            }
+        }
+        // Built at once, which takes less room than one after the other.
+        belief.values = Arc::new(values.into_iter().collect());
+        belief
     }
 }
 
 /// JSON has no maps with keys that are not text; values travel as pairs.
 mod values_as_list {
     use std::collections::BTreeMap;
+    use std::sync::Arc;
 
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     use crate::model::Fact;
 
     pub(super) fn serialize<S: Serializer>(
-        values: &BTreeMap<Fact, f64>,
+        values: &Arc<BTreeMap<Fact, f64>>,
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
         values.iter().collect::<Vec<_>>().serialize(serializer)
@@ -122,9 +184,8 @@ mod values_as_list {
 
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(
         deserializer: D,
-    ) -> Result<BTreeMap<Fact, f64>, D::Error> {
-        Ok(Vec::<(Fact, f64)>::deserialize(deserializer)?
-            .into_iter()
-            .collect())
+    ) -> Result<Arc<BTreeMap<Fact, f64>>, D::Error> {
+        let listed = Vec::<(Fact, f64)>::deserialize(deserializer)?;
+        Ok(Arc::new(listed.into_iter().collect()))
     }
 }

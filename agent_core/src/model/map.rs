@@ -27,16 +27,7 @@ impl Map {
     /// Takes out what changes: facts of `observable` predicates, and the news. What stays is what
     /// does not change.
     pub fn take_changing(&mut self, observable: &[Symbol]) -> Vec<FactChange> {
-        let (changing, fixed): (Vec<_>, Vec<_>) = self
-            .facts
-            .facts()
-            .cloned()
-            .partition(|fact| observable.contains(&fact.name));
-        let mut facts: Belief = fixed.into_iter().collect();
-        for (function, value) in self.facts.values() {
-            facts.apply(&FactChange::Set(function.clone(), value));
-        }
-        self.facts = facts;
+        let changing = self.facts.take_facts_of(observable);
         let mut changing: Vec<_> = changing.into_iter().map(FactChange::Add).collect();
         changing.append(&mut self.news);
         changing

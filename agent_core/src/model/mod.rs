@@ -6,6 +6,7 @@ mod domain;
 mod execution_model;
 mod expression;
 mod instance;
+mod landmarks;
 mod map;
 mod quantity;
 mod symbol;
@@ -18,6 +19,7 @@ pub use execution_model::{
 };
 pub use expression::{Change, Clause, Condition, Effect, Number, Parameter, Pattern, Term};
 pub use instance::Instance;
+pub use landmarks::{Landmarks, Reach};
 pub use map::Map;
 pub use quantity::{Cost, Time};
 pub use symbol::Symbol;

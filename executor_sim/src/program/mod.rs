@@ -68,6 +68,6 @@ pub async fn run(args: ExecutorArgs) -> Result<(), ProgramError> {
 /// The place, and the floor that it is to a robot.
 fn read(options: &PlaceOptions) -> Result<(maps::Place, Floor), ProgramError> {
     let place = maps::Place::open(options.place.as_deref())?;
-    let floor = Floor::try_from(place.site())?;
+    let floor = Floor::try_from(&**place.site())?;
     Ok((place, floor))
 }

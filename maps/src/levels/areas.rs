@@ -1,9 +1,9 @@
 //! The rough level: from area to area, and what there is in each.
 
-use agent_core::model::{Fact, Map};
+use agent_core::model::{Fact, Map, Symbol};
 
 use super::rough::Rough;
-use super::{MapWriter, atom};
+use super::{MapWriter, atom, far};
 use crate::site::{Site, metres};
 
 /// The whole site for the parent agent, in the words of `area.hddl`.
@@ -42,11 +42,20 @@ pub fn area_level(site: &Site) -> Map {
     }
     for area in site.areas() {
         map.object(area.name(), "area");
-        for (node, length_mm) in rough.least_lengths(area.name()) {
-            map.value("distance", &[area.name(), node], metres(length_mm));
-        }
     }
-    map.map
+    if far::can_be_listed(site) {
+        for area in site.areas() {
+            for (node, length_mm) in far::least_lengths(site, area) {
+                map.value("distance", &[area.name(), node], metres(length_mm));
+            }
+        }
+        map.finish()
+    } else {
+        let mut map = map.finish();
+        map.facts
+            .add_landmarks(far::landmarks(site, Symbol::from("distance")));
+        map
+    }
 }
 
 /// What the parent agent believes of itself when the robot stands at a node. `None` if there is

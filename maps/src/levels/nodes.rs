@@ -1,7 +1,9 @@
 //! The detailed level: from node to node, one area at a time.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
+use agent_core::agent::MapsBelow;
 use agent_core::model::{Fact, Map, Symbol};
 
 use super::{MapWriter, atom};
@@ -27,6 +29,25 @@ pub fn area_maps(site: &Site) -> BTreeMap<Symbol, Map> {
             Some((area.name().clone(), map))
         })
         .collect()
+}
+
+/// The maps of all areas of a site, each made when it is asked for.
+#[derive(Clone, Debug)]
+pub struct AreaMaps {
+    site: Arc<Site>,
+}
+
+impl AreaMaps {
+    /// Those of this site.
+    pub fn of(site: Arc<Site>) -> Self {
+        Self { site }
+    }
+}
+
+impl MapsBelow for AreaMaps {
+    fn map_of(&self, place: &Symbol) -> Option<Map> {
+        node_level(&self.site, place.as_str())
+    }
 }
 
 /// The whole site in the words of `node.hddl`, for an agent without a parent.
@@ -66,7 +87,7 @@ fn excerpt<'a>(
     for passage in passages {
         add_passage(&mut map, site, passage);
     }
-    map.map
+    map.finish()
 }
 
 fn add_passage(map: &mut MapWriter, site: &Site, passage: &Passage) {

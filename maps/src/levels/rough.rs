@@ -21,7 +21,6 @@ pub(super) struct Rough<'a> {
     pub(super) throughs: BTreeMap<(&'a Symbol, &'a Symbol, &'a Symbol), u64>,
     /// From where a door leads into an area to a node of it.
     pub(super) inners: BTreeMap<(&'a Symbol, &'a Symbol, &'a Symbol), u64>,
-    site: &'a Site,
 }
 
 /// The middle of an area, and how far it is from there to each of its nodes without leaving it.
@@ -113,20 +112,7 @@ impl<'a> Rough<'a> {
             legs,
             throughs,
             inners,
-            site,
         }
-    }
-
-    /// The least that it takes from anywhere in an area to each node, all doors open: no plan from
-    /// there costs less.
-    pub(super) fn least_lengths(&self, from: &'a Symbol) -> BTreeMap<&'a Symbol, u64> {
-        let mut least = BTreeMap::new();
-        for start in self.site.nodes().filter(|node| node.area() == from) {
-            for (node, length) in self.site.distances_mm(start, |_| true) {
-                keep_least(&mut least, node, length);
-            }
-        }
-        least
     }
 }
 
