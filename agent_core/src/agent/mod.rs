@@ -4,6 +4,7 @@
 //! goal runs at a time. The same machine serves at every level.
 
 mod accept;
+mod alternatives;
 mod aside;
 mod check;
 mod command;
@@ -20,6 +21,7 @@ mod subplan;
 mod suspension;
 mod waiting;
 
+pub use alternatives::{Against, Alternative, Alternatives, Choice, GoalPlace};
 pub use aside::{GoalsAside, WaitsFor};
 pub use configuration::{Configuration, Executors, MapsBelow, Policy};
 pub use goal::Goal;

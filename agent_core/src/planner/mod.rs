@@ -3,15 +3,20 @@
 mod cost;
 mod decompose;
 mod estimate;
+mod hangs_on;
 pub mod invariants;
 mod matching;
 mod naive;
 mod network;
 mod plan;
 mod problem;
+#[cfg(test)]
+mod random_domain;
 mod revise;
 mod state;
+mod what_if;
 
+pub use hangs_on::{Reliance, hangs_on};
 pub use naive::NaivePlanner;
 pub use network::{Frame, Item, TaskList};
 pub use plan::{Agenda, Origin, Plan, Step};
@@ -20,6 +25,7 @@ pub use revise::{
     advance, broken_protection, effect_of, effect_of_suspension, instance, number_of, project,
     simulate,
 };
+pub use what_if::{Considered, WhatIf, consider};
 
 use std::collections::BTreeSet;
 

@@ -112,7 +112,7 @@ impl<'a> View<'a> {
     }
 
     /// The facts that a change is about in this state.
-    fn each_fact(
+    pub fn each_fact(
         &self,
         change: &Change,
         holds: bool,

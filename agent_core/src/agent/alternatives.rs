@@ -1,0 +1,192 @@
+//! What an agent could do instead, and why it does what it does, for whoever asks.
+
+use super::{Agent, Intention};
+use crate::model::{Action, Cost};
+use crate::planner::{
+    Considered, Item, Plan, Planner, Reliance, Settings, WhatIf, consider, hangs_on, simulate,
+};
+
+/// Where a goal is.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum GoalPlace {
+    /// It is pursued at present.
+    Running,
+    /// On the stack.
+    Suspended,
+    /// Its turn has not come.
+    Waiting,
+    /// It waits for the user, or for a fact.
+    Aside,
+}
+
+/// A goal with the plans for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Alternatives<'a> {
+    /// The goal, and what is kept for it.
+    pub intention: &'a Intention,
+    /// Where it is.
+    pub place: GoalPlace,
+    /// The plan that is followed, or was when the goal was set aside, and then the others, cheapest first.
+    /// Empty if there is none as yet.
+    pub plans: Vec<Alternative>,
+    /// Why the first of them is the one that is followed.
+    pub choice: Option<Choice>,
+    /// A cheaper plan that there is not now, and what it would take.
+    pub what_if: Option<WhatIf>,
+    /// Whether all was looked at. If not, there may be more and better plans than these.
+    pub complete: bool,
+}
+
+/// One of the plans for a goal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Alternative {
+    /// The plan.
+    pub plan: Plan,
+    /// What it costs now; what it was last seen to cost, if it does not hold.
+    pub cost: Cost,
+    /// Why it cannot be followed as things are, in words.
+    pub broken: Option<String>,
+    /// What it hangs on.
+    pub hangs_on: Vec<Reliance>,
+    /// Whether it was kept. Others were found for the answer, and forgotten again.
+    pub kept: bool,
+}
+
+/// Why a plan is the one that is followed.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Choice {
+    /// What it costs against the best of the others that could be followed.
+    pub against_others: Against,
+    /// The suspended action that it takes up again, to begin with.
+    pub resumes: Option<Action>,
+    /// The action by which it undoes what is half done, to begin with.
+    pub undoes: Option<Action>,
+}
+
+/// A plan against the best of the others.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Against {
+    /// There is no other.
+    None,
+    /// It costs so much less.
+    Less(Cost),
+    /// It costs the same. Nothing changes without a reason.
+    Same,
+    /// It costs so much more: things have changed, and it is not time to choose again.
+    More(Cost),
+}
+
+impl<P: Planner> Agent<P> {
+    /// The alternatives for every goal: the running one first, then the suspended ones, innermost
+    /// first, then those that wait. Changes nothing.
+    ///
+    /// What is not kept is looked for by planning from scratch in the present belief, with no more
+    /// expansions for all goals than a slice of planning has (decision 9), so that an agent that is asked
+    /// is still an agent that listens.
+    pub fn alternatives(&self) -> Vec<Alternatives<'_>> {
+        let mut budget = self.configuration.policy.expansions_per_slice;
+        let stacked = self.stack.entries().iter().rev();
+        let aside = self.aside.goals().iter();
+        let waiting = self.waiting.intentions().iter();
+        (self
+            .running()
+            .map(|it| (it, GoalPlace::Running))
+            .into_iter())
+        .chain(stacked.map(|entry| (&entry.intention, GoalPlace::Suspended)))
+        .chain(waiting.map(|it| (it, GoalPlace::Waiting)))
+        .chain(aside.map(|(it, _)| (it, GoalPlace::Aside)))
+        .map(|(intention, place)| self.alternatives_of(intention, place, &mut budget))
+        .collect()
+    }
+
+    fn alternatives_of<'a>(
+        &self,
+        intention: &'a Intention,
+        place: GoalPlace,
+        budget: &mut u64,
+    ) -> Alternatives<'a> {
+        let problem = self.problem_of(Some(intention));
+        // The action that runs has begun: the first step of the first plan, if it is still that.
+        let executing = match place {
+            GoalPlace::Running => self.executing().map(|(_, action, _)| action),
+            _ => None,
+        };
+        let evaluate = |plan: Plan, kept: bool| {
+            let first = plan.steps.first();
+            let running = kept && executing.is_some() && first.map(|it| it.action()) == executing;
+            let verdict = simulate(&problem, &plan.steps, running);
+            Alternative {
+                cost: match verdict {
+                    Ok(cost) if plan.rest.is_empty() => cost,
+                    _ => plan.cost,
+                },
+                hangs_on: hangs_on(&problem, &plan.steps, running),
+                broken: verdict.err(),
+                plan,
+                kept,
+            }
+        };
+        let mut plans: Vec<Alternative> = (intention.plans.iter())
+            .map(|plan| evaluate(plan.clone(), true))
+            .collect();
+        let valid = plans.iter().filter(|plan| plan.broken.is_none());
+        let best = valid.map(|plan| plan.cost).min();
+        // Plans that are not decomposed to the end cost what is estimated: nothing is told from that.
+        let in_full = intention.plans.iter().all(|plan| plan.rest.is_empty());
+        let Considered {
+            plans: found,
+            what_if,
+            complete,
+            expanded,
+        } = match in_full && intention.cancelled.is_none() {
+            true => {
+                let settings = Settings::default();
+                consider(&problem, &intention.agendas, settings, best, *budget)
+            }
+            false => Considered::default(),
+        };
+        *budget = budget.saturating_sub(expanded);
+        for plan in found {
+            let same = |known: &Alternative| known.plan.purposes().eq(plan.purposes());
+            if !plans.iter().any(same) {
+                plans.push(evaluate(plan, false));
+            }
+        }
+        if let Some((_, others)) = plans.split_first_mut() {
+            others.sort_by_key(|plan| (plan.broken.is_some(), plan.cost));
+        }
+        plans.truncate(Settings::default().alternatives.max(intention.plans.len()));
+        Alternatives {
+            choice: (intention.plans.first()).and_then(|_| choice(&plans)),
+            intention,
+            place,
+            plans,
+            what_if,
+            complete,
+        }
+    }
+}
+
+/// Why the first is followed.
+fn choice(plans: &[Alternative]) -> Option<Choice> {
+    let (followed, others) = plans.split_first()?;
+    let others = others.iter().filter(|plan| plan.broken.is_none());
+    let against_others = match others.map(|plan| plan.cost).min() {
+        None => Against::None,
+        Some(cost) if cost == followed.cost => Against::Same,
+        Some(cost) if cost > followed.cost => Against::Less(Cost(cost.0 - followed.cost.0)),
+        Some(cost) => Against::More(Cost(followed.cost.0 - cost.0)),
+    };
+    let first = followed.plan.steps.first().map(|step| &step.item);
+    Some(Choice {
+        against_others,
+        resumes: match first {
+            Some(Item::Resume { original, .. }) => Some(original.clone()),
+            _ => None,
+        },
+        undoes: match first {
+            Some(Item::RollBack { action, .. }) => Some(action.clone()),
+            _ => None,
+        },
+    })
+}
