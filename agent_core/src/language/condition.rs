@@ -55,12 +55,17 @@ impl Scope<'_> {
             }
             Some("=") => self.equality(tree, rest, holds, faults),
             Some("typeof" | "sortof" | "sort") => self.kind(tree, rest, holds, faults),
-            Some(word) if UNSUPPORTED.contains(&word) => {
+            Some(word) if UNSUPPORTED.contains(&word) && !self.is_predicate(word) => {
                 unsupported(tree, word, faults);
                 Condition::new()
             }
             _ => self.fact(tree, holds, faults),
         }
+    }
+
+    fn is_predicate(&self, word: &str) -> bool {
+        self.domain
+            .is_some_and(|domain| domain.predicates.contains_key(word))
     }
 
     fn each(&self, trees: &[Tree], holds: bool, faults: &mut Faults) -> Vec<Condition> {

@@ -4,7 +4,7 @@ use super::error::Faults;
 use super::expression::{Scope, UNSUPPORTED, unsupported};
 use super::fit::Sort;
 use super::tree::Tree;
-use crate::model::{Change, Clause, Condition, Effect, Number, Term};
+use crate::model::{Change, Clause, Condition, Domain, Effect, Number, Term};
 
 /// An effect as written: facts, and perhaps a cost.
 #[derive(Default)]
@@ -139,7 +139,13 @@ impl CostedEffect {
             );
             return;
         }
-        place.scope.pattern(function, Sort::Function, faults);
+        let declared = |domain: &Domain| domain.functions.contains_key("total-cost");
+        if place.scope.domain.is_none_or(declared) {
+            place.scope.pattern(function, Sort::Function, faults);
+        } else {
+            let message = "`total-cost` is not declared; add `(:functions (total-cost) - number)`";
+            faults.slip(function.at, message);
+        }
         let cost = place.scope.number(by, faults);
         if matches!(cost, Some(Number::Constant(number)) if number < 0.0) {
             faults.add(by.at, "a cost cannot be negative");

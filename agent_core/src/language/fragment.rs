@@ -172,7 +172,8 @@ fn one<T>(
 }
 
 /// The value if there is no fault, or else the first fault.
-fn finish<T>(text: &str, faults: Faults, value: Option<T>) -> Result<T, LanguageError> {
+fn finish<T>(text: &str, mut faults: Faults, value: Option<T>) -> Result<T, LanguageError> {
+    faults.be_strict();
     match (faults.into_errors(text).into_iter().next(), value) {
         (None, Some(value)) => Ok(value),
         (Some(fault), _) => Err(fault),

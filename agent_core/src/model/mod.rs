@@ -1,5 +1,7 @@
 //! The nouns, one a file.
 
+#[cfg(test)]
+pub(crate) mod arbitrary;
 mod atom;
 mod belief;
 mod domain;

@@ -10,7 +10,7 @@ use super::matching::for_each_binding;
 use super::network::{Frame, Item, TaskList};
 use super::plan::Step;
 use super::state::{Bindings, Delta, View, bind_arguments};
-use crate::model::{Fact, Method, Task, Term};
+use crate::model::{Fact, Method, Parameter, Task, Term};
 
 /// What may come next.
 pub(super) struct Successor {
@@ -38,6 +38,9 @@ pub(super) fn successors(
         return act(view, item, parent, rest, wanted).into_iter().collect();
     }
     let mut found = Vec::new();
+    if !fits(problem, task, problem.domain.tasks.get(&task.name)) {
+        return found;
+    }
     for method in &problem.domain.methods {
         let Some(bindings) = bind_head(problem, method, task) else {
             continue;
@@ -96,6 +99,18 @@ fn bind_head(problem: &Problem, method: &Method, task: &Task) -> Option<Bindings
     Some(bindings)
 }
 
+/// Whether the arguments are of the types declared: a variable of a wider type may have been bound
+/// to anything.
+fn fits(problem: &Problem, atom: &Task, declared: Option<&Vec<Parameter>>) -> bool {
+    declared.is_none_or(|parameters| {
+        let pairs = atom.args.iter().zip(parameters);
+        atom.args.len() == parameters.len()
+            && pairs
+                .into_iter()
+                .all(|(arg, parameter)| problem.fits(arg, &parameter.kind))
+    })
+}
+
 /// The one successor of an action, if its precondition holds.
 fn act(
     view: View<'_>,
@@ -109,6 +124,9 @@ fn act(
         return None;
     }
     let operator = view.problem.domain.operators.get(&action.name)?;
+    if !fits(view.problem, action, Some(&operator.parameters)) {
+        return None;
+    }
     let bindings = bind_arguments(&action.args, &operator.parameters);
     let mut holds = false;
     for_each_binding(

@@ -3,10 +3,11 @@
 use std::collections::BTreeSet;
 
 use super::state::{Bindings, View};
-use crate::model::{Clause, Condition, Fact, Parameter, Pattern, Term};
+use crate::model::{Clause, Condition, Fact, Parameter, Pattern, Symbol, Term};
 
 /// Calls `found` with every binding of `parameters` that makes `condition` hold, beginning with
-/// `bindings`.
+/// `bindings`. Of what is bound from the beginning the type is not asked; there may be more of it
+/// than parameters.
 ///
 /// Facts of observable predicates that were asked for and did not hold are added to `wanted`: if
 /// nothing else helps, a plan waits for them.
@@ -85,7 +86,7 @@ impl Query<'_, '_> {
                 }
                 Some(holds)
             }
-            _ if bindings.iter().any(Option::is_none) => None,
+            _ if !is_bound(literal, bindings) => None,
             Clause::Any(choices) => Some(
                 choices
                     .iter()
@@ -98,9 +99,7 @@ impl Query<'_, '_> {
 
     /// Whether `condition` holds for some objects in the place of `variables`.
     fn some(&mut self, variables: &[Parameter], condition: &Condition, outer: &Bindings) -> bool {
-        let parameters = [self.parameters, variables].concat();
-        let mut bindings = outer.clone();
-        bindings.resize(parameters.len(), None);
+        let (parameters, bindings) = self.with(variables, outer);
         let mut holds = false;
         for_each_binding(
             self.view,
@@ -115,10 +114,8 @@ impl Query<'_, '_> {
 
     /// Whether `condition` holds for all objects in the place of `variables`.
     fn every(&mut self, variables: &[Parameter], condition: &Condition, outer: &Bindings) -> bool {
-        let parameters = [self.parameters, variables].concat();
+        let (parameters, bindings) = self.with(variables, outer);
         let mut all = Vec::new();
-        let mut bindings = outer.clone();
-        bindings.resize(parameters.len(), None);
         for_each_binding(
             self.view,
             &parameters,
@@ -135,6 +132,24 @@ impl Query<'_, '_> {
         };
         all.iter()
             .all(|bindings| inner.some(&[], condition, bindings))
+    }
+
+    /// The variables in scope and then those of a quantifier, which nothing binds as yet.
+    ///
+    /// A quantifier is only decided when all that it speaks of is bound, so that variables which
+    /// are still free are of no interest within it.
+    fn with(&self, variables: &[Parameter], outer: &Bindings) -> (Vec<Parameter>, Bindings) {
+        let free = Symbol::from("object");
+        let outside = Parameter {
+            name: Symbol::from(""),
+            kind: free.clone(),
+        };
+        let mut parameters = vec![outside; outer.len()];
+        parameters.extend(variables.iter().cloned());
+        let some = |object: &Option<Symbol>| Some(object.clone().unwrap_or_else(|| free.clone()));
+        let mut bindings: Bindings = outer.iter().map(some).collect();
+        bindings.resize(parameters.len(), None);
+        (parameters, bindings)
     }
 
     /// `bindings` with those that make `pattern` the `fact`, if types allow.
@@ -155,5 +170,24 @@ impl Query<'_, '_> {
             }
         }
         Some(bindings)
+    }
+}
+
+/// Whether everything is bound that a clause speaks of, apart from variables of its own.
+fn is_bound(clause: &Clause, bindings: &Bindings) -> bool {
+    let bound = |term: &Term| match term {
+        Term::Variable(index) => bindings.get(*index).is_none_or(Option::is_some),
+        Term::Constant(_) => true,
+    };
+    match clause {
+        Clause::Fact(_, pattern) => pattern.args.iter().all(bound),
+        Clause::Equal(_, left, right) => bound(left) && bound(right),
+        Clause::Any(choices) => choices
+            .iter()
+            .flatten()
+            .all(|inner| is_bound(inner, bindings)),
+        Clause::Every(_, inner) | Clause::Exists(_, inner) => {
+            inner.iter().all(|inner| is_bound(inner, bindings))
+        }
     }
 }

@@ -6,6 +6,8 @@ mod estimate;
 mod hangs_on;
 pub mod invariants;
 mod matching;
+#[cfg(test)]
+mod meaning;
 mod naive;
 mod network;
 mod plan;
@@ -14,6 +16,8 @@ mod problem;
 mod random_domain;
 mod revise;
 mod state;
+#[cfg(test)]
+mod typing;
 mod what_if;
 
 pub use hangs_on::{Reliance, hangs_on};

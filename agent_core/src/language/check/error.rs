@@ -75,6 +75,20 @@ pub enum DomainError {
         /// In which case, or nothing.
         case: String,
     },
+    /// An effect that depends on the state, or that ranges over some objects only.
+    #[error(
+        "of `{action}`, suspended and resumed, nothing can be proved, because {whose} has an effect \
+         with `when`, or a `forall` that is not over all there is to remove; write it without, or \
+         do not let `{action}` be suspended"
+    )]
+    Unproved {
+        /// Where it stands.
+        key: String,
+        /// The action that can be suspended.
+        action: Symbol,
+        /// Whose effect it is.
+        whose: String,
+    },
     /// A fact that others bring about is brought about by this agent.
     #[error(
         "`{predicate}` is observable, so others change it, but `{action}` makes it true; remove \
@@ -120,6 +134,7 @@ impl DomainError {
             | Self::NotAnAction { key, .. }
             | Self::CannotResume { key, .. }
             | Self::EndsElsewhere { key, .. }
+            | Self::Unproved { key, .. }
             | Self::ObservableAdded { key, .. } => key,
         }
     }

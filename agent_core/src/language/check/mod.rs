@@ -1,5 +1,6 @@
 //! What must hold between a domain and its execution model, so that interrupting is safe.
 
+mod beyond;
 mod cases;
 mod error;
 mod names;

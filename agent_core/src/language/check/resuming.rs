@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::beyond::{renamed, unproved};
 use super::cases::{Grouping, Things};
 use super::state::{Argument, Ground, GroundEffect, Known};
 use super::{DomainError, Truth};
@@ -25,6 +26,11 @@ pub(super) fn check_resuming(
     };
     if resuming.parameters.len() != suspension.resume.args.len() {
         return; // likewise
+    }
+    let unproved = unproved(domain, operator, suspension, resuming);
+    if !unproved.is_empty() {
+        errors.extend(unproved);
+        return;
     }
     let constants = constants_of(operator, suspension, resuming);
     let proof = Proof {
@@ -87,8 +93,14 @@ impl Proof<'_> {
                     );
                     ((left == right) == *wanted, words)
                 }
-                // Of what is more than a fact nothing is proved.
-                Clause::Any(_) | Clause::Every(..) | Clause::Exists(..) => continue,
+                Clause::Any(_) | Clause::Every(..) | Clause::Exists(..) => {
+                    let words = format!(
+                        "its `or`, `forall` or `exists` holds (that is proved only if `{}` needs \
+                         the same, and the suspension changes nothing in it)",
+                        self.operator.name
+                    );
+                    (self.is_kept(literal), words)
+                }
             };
             if !proved {
                 errors.push(DomainError::CannotResume {
@@ -101,6 +113,26 @@ impl Proof<'_> {
             }
         }
         errors
+    }
+
+    /// Whether the suspended action needs just this too, and the suspension leaves it alone.
+    fn is_kept(&self, clause: &Clause) -> bool {
+        let wanted = renamed(
+            clause,
+            &self.suspension.resume.args,
+            self.resuming,
+            self.operator,
+        );
+        let own = self.operator.parameters.len();
+        let same: Vec<Term> = (0..own).map(Term::Variable).collect();
+        let known = |clause| renamed(clause, &same, self.operator, self.operator) == wanted;
+        let effect = &self.suspension.effect;
+        let changes = || effect.remove.iter().chain(&effect.add);
+        let mut touched = false;
+        clause.each_pattern(&mut |pattern| {
+            touched |= changes().any(|change| change.fact.name == pattern.name);
+        });
+        !touched && self.operator.precondition.iter().any(known)
     }
 
     /// Every fact is the same in the end, interrupted or not.

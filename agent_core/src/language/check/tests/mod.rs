@@ -1,6 +1,8 @@
 //! Mistakes in execution models, and what must not be taken for one.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+mod beyond;
+
 use super::*;
 use crate::language::{
     parse_domain, parse_effects, parse_literal, parse_number, parse_parameter, parse_pattern,
