@@ -92,6 +92,25 @@ fn the_three_roles_never_name_each_other() {
 }
 
 #[test]
+fn the_judge_of_plans_knows_none_of_our_crates() {
+    let known = cargo_tree("plan_checker");
+    assert!(known.contains(&"plan_checker".to_owned()), "{known:?}");
+    let manifest = std::fs::read_to_string(root().join("Cargo.toml")).expect("it is text");
+    let members = manifest.lines().filter_map(|line| {
+        let member = line.strip_prefix("    \"")?.strip_suffix("\",")?;
+        member.rsplit('/').next()
+    });
+    let ours: Vec<&str> = members.chain(["intermezzo_tests"]).collect();
+    assert!(
+        ours.contains(&"agent_core"),
+        "the list is read right: {ours:?}"
+    );
+    for name in known.iter().filter(|name| *name != "plan_checker") {
+        assert!(!ours.contains(&name.as_str()), "plan_checker knows {name}");
+    }
+}
+
+#[test]
 fn no_source_file_is_longer_than_it_should_be() {
     let folders = [
         "agent_core/src",
@@ -101,6 +120,7 @@ fn no_source_file_is_longer_than_it_should_be() {
         "intermezzo/src",
         "maps/src",
         "parent_agent/src",
+        "tests/plan_checker/src",
         "tests/src",
     ];
     for folder in folders {
