@@ -1,4 +1,4 @@
-//! The reader of HDDL, and the checks that a domain must pass before an agent acts on it.
+//! The reader and the writer of HDDL, and the checks that a domain must pass before an agent acts on it.
 //!
 //! The language is total-order HDDL, domains and problems. What goes beyond is refused by name and
 //! place rather than misread.
@@ -24,6 +24,7 @@ mod spelling;
 mod subtasks;
 mod tree;
 mod typed_list;
+mod write;
 
 #[cfg(test)]
 mod hostile_text;
@@ -42,3 +43,4 @@ pub use fragment::{
 pub use near::nearest;
 pub use problem::parse_problem;
 pub use spelling::Spelling;
+pub use write::{write_domain, write_problem};

@@ -12,7 +12,7 @@ pub(super) const AREA: &str = include_str!("../../../../maps/museum/area.hddl");
 pub(super) const NODE: &str = include_str!("../../../../maps/museum/node.hddl");
 
 /// A domain in which nothing is wrong, to put faults into.
-const SMALL: &str = "(define (domain small)
+pub(super) const SMALL: &str = "(define (domain small)
   (:requirements :typing :hierarchy)
   (:types place - object room - place door - object)
   (:constants hall - room)
