@@ -6,6 +6,9 @@
 pub mod compile;
 mod control;
 mod depth_first;
+mod ground;
+mod heuristic;
+pub mod informed;
 pub mod plan;
 mod solve;
 

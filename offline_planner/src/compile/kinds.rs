@@ -73,6 +73,16 @@ impl Kinds {
         self.of(members)
     }
 
+    /// How many sets there are.
+    pub fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
     /// The set of that number.
     pub fn get(&self, id: KindId) -> &Kind {
         &self.all[id.index()]

@@ -1,0 +1,4 @@
+//! How far it is from a state and a list of tasks to the end, as a guess or as a bound.
+
+pub(crate) mod additive;
+pub(crate) mod relaxed;
