@@ -136,6 +136,7 @@ impl<'m> Reader<'m> {
                 None => unknown.push(word),
             }
         }
+        let all_known = unknown.is_empty();
         for word in unknown {
             let what = format!("no object `{word}` in domain or problem");
             self.faults.push(Fault::at(Kind::UnknownName, id, what));
@@ -180,7 +181,9 @@ impl<'m> Reader<'m> {
             method,
             children: (children_start, self.plan.children.len() as u32),
         });
-        self.check_arguments(self.plan.nodes.len() - 1);
+        if all_known {
+            self.check_arguments(self.plan.nodes.len() - 1);
+        }
     }
 
     fn check_arguments(&mut self, node: NodeId) {
