@@ -7,10 +7,10 @@ use super::error::{Faults, LanguageError};
 use super::expression::object;
 use super::fields::{Fields, fields, read_parameters};
 use super::method::{self, method};
-use super::near::hint;
 use super::section::{requirements, sections};
 use super::tree::{self, Tree};
-use super::typed_list::{either, kind_of, name, parameters, typed_list};
+use super::typed_list::{Kinds, name, parameters, typed_list};
+use super::types;
 use crate::model::{Domain, Number, Operator, Parameter, Symbol};
 
 /// Sections in the order in which they must be read, so that what is used is known by then.
@@ -52,6 +52,7 @@ fn read_domain(text: &str, strict: bool) -> Result<Domain, Vec<LanguageError>> {
         domain: Domain::default(),
         faults,
         task_places: BTreeMap::new(),
+        method_names: BTreeSet::new(),
     };
     reader.read(&trees);
     let Reader {
@@ -72,6 +73,7 @@ struct Reader {
     faults: Faults,
     /// Where each task is declared.
     task_places: BTreeMap<Symbol, usize>,
+    method_names: BTreeSet<Symbol>,
 }
 
 /// An action or a method whose keywords have been read.
@@ -96,8 +98,10 @@ impl Reader {
         };
         of(":requirements").for_each(|(_, items)| requirements(items, &mut self.faults));
         let types: Vec<Tree> = of(":types").flat_map(|(_, items)| items.to_vec()).collect();
-        self.types(&types);
-        sections.iter().for_each(|section| self.unions(section));
+        types::types(&types, &mut self.domain, &mut self.faults);
+        for section in &sections {
+            types::unions(section, &mut self.domain);
+        }
         of(":constants").for_each(|(_, items)| self.constants(items));
         of(":predicates").for_each(|(_, items)| self.predicates(items));
         of(":functions").for_each(|(_, items)| self.functions(items));
@@ -120,81 +124,14 @@ impl Reader {
         self.undone_tasks();
     }
 
-    fn types(&mut self, items: &[Tree]) {
-        let list = typed_list(items, &mut self.faults);
-        let mut places = BTreeMap::new();
-        for typed in &list {
-            if typed.name.word() == Some("object") {
-                continue; // some write out what holds anyway
-            }
-            let Some(kind) = name(typed.name, "a type", &mut self.faults) else {
-                continue;
-            };
-            let above =
-                kind_of(typed, None, &mut self.faults).unwrap_or_else(|| Symbol::from("object"));
-            match self.domain.types.insert(kind.clone(), above.clone()) {
-                Some(before) if before == above => {
-                    let message = format!("type `{kind}` is declared twice");
-                    self.faults.slip(typed.name.at, message);
-                }
-                Some(_) => {
-                    let message = format!("type `{kind}` is declared twice");
-                    self.faults.add(typed.name.at, message);
-                }
-                None => {}
-            }
-            places.insert(kind, typed.name.at);
-        }
-        // Only now are all types known that may stand above others.
-        let mut checked = BTreeSet::new();
-        for kind in list.iter().filter_map(|typed| typed.kind) {
-            if let Some(word) = kind.word().filter(|word| *word != "object")
-                && !self.domain.types.contains_key(word)
-                && checked.insert(word)
-            {
-                let among = self.domain.types.keys().map(Symbol::as_str);
-                let hint = hint(word, among, "; declare it in `(:types …)`");
-                let message = format!("type `{word}` is not declared{hint}");
-                self.faults.slip(kind.at, message);
-            }
-        }
-        for above in checked {
-            let above = Symbol::from(above);
-            self.domain.types.insert(above, Symbol::from("object"));
-        }
-        for (kind, at) in places {
-            let mut above = self.domain.types.get(&kind);
-            let mut steps = 0;
-            while let Some(next) = above.filter(|next| **next != kind) {
-                above = self.domain.types.get(next);
-                steps += 1;
-                if steps > self.domain.types.len() {
-                    break; // a circle further up, which is reported there
-                }
-            }
-            if above == Some(&kind) {
-                let message = format!("type `{kind}` stands above itself");
-                self.faults.add(at, message);
-            }
-        }
-    }
-
-    /// Every `(either …)` that occurs anywhere.
-    fn unions(&mut self, tree: &Tree) {
-        if let Some((union, members)) = either(tree).filter(|(_, members)| members.len() > 1) {
-            self.domain.unions.insert(union, members);
-        }
-        for item in tree.list().unwrap_or_default() {
-            self.unions(item);
-        }
-    }
-
     fn constants(&mut self, items: &[Tree]) {
+        let mut kinds = Kinds::default();
         for typed in typed_list(items, &mut self.faults) {
             let Some(constant) = object(typed.name, &mut self.faults) else {
                 continue;
             };
-            let kind = kind_of(&typed, Some(&self.domain), &mut self.faults)
+            let kind = kinds
+                .next(&typed, Some(&self.domain), &mut self.faults)
                 .unwrap_or_else(|| Symbol::from("object"));
             let message = format!("constant `{constant}` is declared twice");
             match self.domain.constants.insert(constant, kind.clone()) {
@@ -328,7 +265,7 @@ impl Reader {
             return;
         };
         let name = head.name;
-        if self.domain.methods.iter().any(|known| known.name == name) {
+        if !self.method_names.insert(name.clone()) {
             let message = format!("method `{name}` is declared twice");
             self.faults.slip(head.at, message);
         }

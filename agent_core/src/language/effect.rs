@@ -1,10 +1,12 @@
 //! What an action makes true or false, and what it costs.
 
+use std::collections::BTreeSet;
+
 use super::error::Faults;
 use super::expression::{Scope, UNSUPPORTED, unsupported};
 use super::fit::Sort;
 use super::tree::Tree;
-use crate::model::{Change, Clause, Condition, Domain, Effect, Number, Term};
+use crate::model::{Change, Clause, Condition, Domain, Effect, Number, Parameter, Symbol, Term};
 
 /// An effect as written: facts, and perhaps a cost.
 #[derive(Default)]
@@ -19,7 +21,11 @@ struct Place<'a> {
     scope: Scope<'a>,
     /// How many of these are the action's parameters.
     own: usize,
+    /// The quantified variables again, each with a name of its own.
+    over: Vec<Parameter>,
     when: Condition,
+    /// How many clauses that are.
+    size: usize,
 }
 
 impl CostedEffect {
@@ -28,7 +34,9 @@ impl CostedEffect {
         let place = Place {
             scope: *scope,
             own: scope.parameters.len(),
+            over: Vec::new(),
             when: Condition::new(),
+            size: 0,
         };
         self.read_in(tree, &place, faults);
     }
@@ -74,9 +82,13 @@ impl CostedEffect {
     }
 
     fn change(&self, tree: &Tree, place: &Place<'_>, faults: &mut Faults) -> Option<Change> {
+        let parts = place.over.len() + place.size;
+        if faults.copies_too_much(tree.at, parts) {
+            return None;
+        }
         Some(Change {
             fact: place.scope.pattern(tree, Sort::Predicate, faults)?,
-            over: place.scope.parameters[place.own..].to_vec(),
+            over: place.over.clone(),
             when: place.when.clone(),
         })
     }
@@ -87,6 +99,9 @@ impl CostedEffect {
             return;
         };
         let parameters = place.scope.with(&variables);
+        if faults.copies_too_much(tree.at, place.size + parameters.len()) {
+            return;
+        }
         // Quantifiers in the conditions so far now stand behind these variables too.
         let mut when = place.when.clone();
         move_inner(&mut when, place.scope.parameters.len(), variables.len());
@@ -96,7 +111,9 @@ impl CostedEffect {
                 domain: place.scope.domain,
             },
             own: place.own,
+            over: with_own_names(&parameters, place.own),
             when,
+            size: place.size,
         };
         self.read_in(body, &inner, faults);
     }
@@ -110,11 +127,16 @@ impl CostedEffect {
             );
             return;
         };
+        if faults.copies_too_much(tree.at, place.size + place.over.len()) {
+            return;
+        }
         let mut when = place.when.clone();
         when.extend(place.scope.condition(given, faults));
         let inner = Place {
             scope: place.scope,
             own: place.own,
+            over: place.over.clone(),
+            size: size(&when),
             when,
         };
         self.read_in(body, &inner, faults);
@@ -155,6 +177,39 @@ impl CostedEffect {
         }
         self.cost = cost;
     }
+}
+
+/// The variables from number `own` on, none of them with the name of one before it: a fact may be
+/// in several quantifiers, which a [`Change`] does not tell apart.
+fn with_own_names(parameters: &[Parameter], own: usize) -> Vec<Parameter> {
+    let (own, quantified) = parameters.split_at(own);
+    let mut names: BTreeSet<Symbol> = own.iter().map(|own| own.name.clone()).collect();
+    let mut out = Vec::new();
+    for variable in quantified {
+        let mut name = variable.name.clone();
+        let mut number = 2;
+        while names.contains(&name) {
+            name = Symbol::from(format!("{}-{number}", variable.name));
+            number += 1;
+        }
+        names.insert(name.clone());
+        let kind = variable.kind.clone();
+        out.push(Parameter { name, kind });
+    }
+    out
+}
+
+/// How many clauses a condition has, those within others included.
+fn size(condition: &[Clause]) -> usize {
+    let sizes = condition.iter().map(|clause| match clause {
+        Clause::Fact(_, pattern) => 1 + pattern.args.len(),
+        Clause::Equal(..) => 1,
+        Clause::Any(choices) => 1 + choices.iter().map(|choice| size(choice) + 1).sum::<usize>(),
+        Clause::Every(variables, inner) | Clause::Exists(variables, inner) => {
+            1 + variables.len() + size(inner)
+        }
+    });
+    sizes.sum()
 }
 
 /// Moves all variables from number `from` on by `by`: those that quantifiers in the condition

@@ -15,11 +15,16 @@ pub struct LanguageError {
 /// More faults than anyone reads at once. What is read after so many is not looked at.
 const ENOUGH: usize = 1000;
 
+/// How many parts of conditions may be copied into effects: a long condition in front of many
+/// facts is a condition of each of them.
+const COPIES: usize = 1_000_000;
+
 /// The faults found so far; reading goes on after one, so that all are reported at once.
 #[derive(Debug, Default)]
 pub(super) struct Faults {
     faults: Vec<(usize, String)>,
     slips: Vec<(usize, String)>,
+    copied: usize,
 }
 
 impl Faults {
@@ -48,6 +53,20 @@ impl Faults {
     /// Whether so much is wrong that it is not worth while to look for more.
     pub(super) fn is_enough(&self) -> bool {
         self.faults.len() >= ENOUGH
+    }
+
+    /// Counts copies of parts of the text. Whether there have been so many that memory is in
+    /// danger, which is a fault.
+    pub(super) fn copies_too_much(&mut self, offset: usize, parts: usize) -> bool {
+        let before = self.copied;
+        self.copied = before.saturating_add(parts);
+        if before <= COPIES && self.copied > COPIES {
+            self.add(
+                offset,
+                "too many effects share too long conditions and variables; write them shorter",
+            );
+        }
+        self.copied > COPIES
     }
 
     /// The faults in the order of the text.

@@ -72,6 +72,9 @@ impl<'a> Scope<'a> {
 
     /// A name with arguments, of the given sort.
     pub(super) fn pattern(&self, tree: &Tree, sort: Sort, faults: &mut Faults) -> Option<Pattern> {
+        if faults.is_enough() {
+            return None;
+        }
         let Some((head, arguments)) = tree.list().and_then(|items| items.split_first()) else {
             faults.add(
                 tree.at,

@@ -24,6 +24,7 @@ mod spelling;
 mod subtasks;
 mod tree;
 mod typed_list;
+mod types;
 mod write;
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use super::number::decimal;
 use super::section::{requirements, sections};
 use super::subtasks::{self, subtasks};
 use super::tree::{self, Tree};
-use super::typed_list::{kind_of, typed_list};
+use super::typed_list::{Kinds, typed_list};
 use crate::model::{Belief, Condition, Domain, Fact, FactChange, Instance, Pattern, Symbol};
 
 /// What a problem may have. What is not here is refused.
@@ -103,11 +103,13 @@ impl Reader {
     }
 
     fn objects(&mut self, items: &[Tree]) {
+        let mut kinds = Kinds::default();
         for typed in typed_list(items, &mut self.faults) {
             let Some(name) = object(typed.name, &mut self.faults) else {
                 continue;
             };
-            let kind = kind_of(&typed, Some(&self.domain), &mut self.faults)
+            let kind = kinds
+                .next(&typed, Some(&self.domain), &mut self.faults)
                 .unwrap_or_else(|| Symbol::from("object"));
             let before = self.domain.constants.get(&name);
             // Some problems repeat the constants of their domain; the narrower type says more.

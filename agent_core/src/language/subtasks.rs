@@ -1,6 +1,6 @@
 //! What is to be done in place of a task, and in which order.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::error::Faults;
 use super::expression::Scope;
@@ -98,13 +98,11 @@ fn sorted<'t>(
     subtasks: Vec<Subtask<'t>>,
     faults: &mut Faults,
 ) -> Vec<Subtask<'t>> {
-    let ids: Vec<Option<&str>> = subtasks
-        .iter()
-        .map(|subtask| subtask.id.and_then(Tree::word))
-        .collect();
-    let mut known = BTreeSet::new();
-    for id in subtasks.iter().filter_map(|subtask| subtask.id) {
-        if !known.insert(id.word()) {
+    let mut known = BTreeMap::new();
+    for (index, subtask) in subtasks.iter().enumerate() {
+        if let Some(id) = subtask.id
+            && known.insert(id.word().unwrap_or_default(), index).is_some()
+        {
             faults.add(id.at, format!("the subtask `{id}` is named twice"));
         }
     }
@@ -114,7 +112,7 @@ fn sorted<'t>(
     }
     let mut unreadable = false;
     for pair in ordering.map(|(_, tree)| pairs(tree)).unwrap_or_default() {
-        let Some(pair) = pair_of(pair, &ids, faults) else {
+        let Some(pair) = pair_of(pair, &known, faults) else {
             unreadable = true;
             continue;
         };
@@ -166,7 +164,11 @@ fn pairs(ordering: &Tree) -> &[Tree] {
 }
 
 /// `(< t1 t2)` or `(t1 < t2)`, as indices of the subtasks.
-fn pair_of(tree: &Tree, ids: &[Option<&str>], faults: &mut Faults) -> Option<(usize, usize)> {
+fn pair_of(
+    tree: &Tree,
+    ids: &BTreeMap<&str, usize>,
+    faults: &mut Faults,
+) -> Option<(usize, usize)> {
     let (first, second) = match tree.list() {
         Some([sign, first, second]) if sign.word() == Some("<") => (first, second),
         Some([first, sign, second]) if sign.word() == Some("<") => (first, second),
@@ -176,11 +178,11 @@ fn pair_of(tree: &Tree, ids: &[Option<&str>], faults: &mut Faults) -> Option<(us
         }
     };
     let mut index = |tree: &Tree| {
-        let found = ids.iter().position(|id| id.is_some() && *id == tree.word());
+        let found = tree.word().and_then(|word| ids.get(word)).copied();
         if found.is_none() {
             let hint = hint(
                 tree.word().unwrap_or_default(),
-                ids.iter().copied().flatten(),
+                ids.keys().copied(),
                 "; name it as in `(t1 (go ?n))`",
             );
             faults.add(tree.at, format!("no subtask is named `{tree}`{hint}"));

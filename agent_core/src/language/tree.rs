@@ -127,7 +127,11 @@ fn read_with(text: &str, fold: fn(&str) -> String, faults: &mut Faults) -> Vec<T
                 ),
             },
             Ok(Token::Word) | Err(()) => {
-                let (sign, rest) = split(text.get(span).unwrap_or_default());
+                let word = text.get(span).unwrap_or_default();
+                if at == 0 && word == "\u{feff}" {
+                    continue; // a byte order mark
+                }
+                let (sign, rest) = split(word);
                 if !sign.is_empty() {
                     let kind = Kind::Word(sign.to_owned());
                     append(&mut open, &mut done, at, kind);

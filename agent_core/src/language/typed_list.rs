@@ -1,5 +1,7 @@
 //! Lists such as `?from ?to - area ?d - door`.
 
+use std::collections::BTreeSet;
+
 use super::error::Faults;
 use super::fit::type_is_declared;
 use super::near::hint;
@@ -18,6 +20,12 @@ pub(super) struct Typed<'t> {
 const RESERVED: &[&str] = &[
     "and", "or", "not", "imply", "forall", "exists", "when", "increase",
 ];
+
+/// More variables than anyone declares at once.
+const MAX_VARIABLES: usize = 10_000;
+
+/// More types than anyone joins in one `either`.
+const MAX_EITHER: usize = 100;
 
 /// Pairs every name with the type that stands after its group.
 pub(super) fn typed_list<'t>(items: &'t [Tree], faults: &mut Faults) -> Vec<Typed<'t>> {
@@ -118,6 +126,13 @@ pub(super) fn kind_named(
         return Some(Symbol::from("object"));
     }
     if let Some((union, members)) = either(tree) {
+        if members.len() > MAX_EITHER {
+            faults.add(
+                tree.at,
+                format!("more than {MAX_EITHER} types in one `either`"),
+            );
+            return None;
+        }
         for member in tree.list().into_iter().flatten().skip(1) {
             kind_named(member, domain, faults);
         }
@@ -160,6 +175,33 @@ pub(super) fn either(tree: &Tree) -> Option<(Symbol, Vec<Symbol>)> {
     ))
 }
 
+/// The types of a list, one after the other: a group of names shares its type, and one look at it
+/// is enough, as is one fault.
+#[derive(Default)]
+pub(super) struct Kinds {
+    last: Option<(usize, Option<Symbol>)>,
+}
+
+impl Kinds {
+    /// As [`kind_of`].
+    pub(super) fn next(
+        &mut self,
+        typed: &Typed<'_>,
+        domain: Option<&Domain>,
+        faults: &mut Faults,
+    ) -> Option<Symbol> {
+        let place = typed.kind.map(|kind| kind.at);
+        match &self.last {
+            Some((last, kind)) if Some(*last) == place => kind.clone(),
+            _ => {
+                let kind = kind_of(typed, domain, faults);
+                self.last = place.map(|place| (place, kind.clone()));
+                kind
+            }
+        }
+    }
+}
+
 /// Reads parameters: `?from ?to - area ?d - door`. With a domain, their types must be declared.
 pub(super) fn parameters(
     items: &[Tree],
@@ -167,25 +209,24 @@ pub(super) fn parameters(
     faults: &mut Faults,
 ) -> Vec<Parameter> {
     let mut out: Vec<Parameter> = Vec::new();
-    let mut last_type = None;
+    let mut names = BTreeSet::new();
+    let mut kinds = Kinds::default();
     for typed in typed_list(items, faults) {
         let Some(name) = variable(typed.name, faults) else {
             continue;
         };
-        if out.iter().any(|parameter| parameter.name == name) {
+        if !names.insert(name.clone()) {
             faults.add(typed.name.at, format!("`{name}` is declared twice"));
             continue;
         }
-        // A group of variables shares its type, and one fault about it is enough.
-        let place = typed.kind.map(|kind| kind.at);
-        let mut repeated = Faults::default();
-        let report = if place.is_some() && place == last_type {
-            &mut repeated
-        } else {
-            &mut *faults
-        };
-        last_type = place;
-        let kind = kind_of(&typed, domain, report).unwrap_or_else(|| Symbol::from("object"));
+        if out.len() == MAX_VARIABLES {
+            let message = format!("more than {MAX_VARIABLES} variables");
+            faults.add(typed.name.at, message);
+            break;
+        }
+        let kind = kinds
+            .next(&typed, domain, faults)
+            .unwrap_or_else(|| Symbol::from("object"));
         out.push(Parameter { name, kind });
     }
     out

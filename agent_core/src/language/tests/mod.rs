@@ -414,6 +414,17 @@ fn variables_of_a_condition_make_room_for_those_of_an_effect_within() {
 }
 
 #[test]
+fn quantified_variables_of_an_effect_never_share_a_name() {
+    let found = effect("(forall (?a - room) (forall (?a - door) (joins ?b ?b ?a)))");
+    let over = &found.add[0].over;
+    assert_eq!(
+        over.iter().map(|one| one.name.as_str()).collect::<Vec<_>>(),
+        ["?a-2", "?a-3"]
+    );
+    assert_eq!(found.add[0].fact, pattern("joins", &[1, 1, 4]));
+}
+
+#[test]
 fn a_type_may_be_either_of_several() {
     let domain = SMALL.replace("(?r - room) :task", "(?r - (either room door)) :task");
     let domain = parse_domain(&domain).unwrap();
