@@ -82,16 +82,15 @@ fn check_heights(domain: &Domain, places: &BTreeMap<Symbol, usize>, faults: &mut
                 .get_key_value(&domain.types[kind])
                 .map(|(above, _)| above);
         }
-        let mut height = next
+        let lowest = next
             .and_then(|known| heights.get(known))
             .map_or(0, |known| known + 1);
-        for kind in path.into_iter().rev() {
+        for (kind, height) in path.into_iter().rev().zip(lowest..) {
             if height == MAX_HEIGHT {
                 let message = format!("more than {MAX_HEIGHT} types above one another");
                 faults.add(place(kind), message);
             }
             heights.insert(kind, height);
-            height += 1;
         }
     }
 }
