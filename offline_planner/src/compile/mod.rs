@@ -45,8 +45,22 @@ pub struct Compiled {
     pub top: TaskId,
     /// The artificial action that asks for the goal; none if anything may hold in the end.
     pub goal: Option<ActionId>,
+    /// The facts among the goals, and until when something can be done for them.
+    pub goals: Vec<Goal>,
     /// Whether the domain says what actions cost. If not, each counts one.
     pub has_costs: bool,
+}
+
+/// A fact that must hold in the end, or must not.
+#[derive(Clone, Debug)]
+pub struct Goal {
+    /// Whether it must hold.
+    pub holds: bool,
+    /// The fact; without variables.
+    pub fact: FactPattern,
+    /// The last task of the problem that can bring it about, by its place among the subtasks of
+    /// the one method of [`Compiled::top`]. Once that task is done, it must be so and stay so.
+    pub last_help: Option<usize>,
 }
 
 /// What facts are about.

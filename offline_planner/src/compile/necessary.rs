@@ -6,14 +6,17 @@
 //! subtasks that cannot help, by what tasks may change at all.)
 
 use super::changes::PossibleChanges;
-use super::{Clause, Compiled, Condition, FactPattern, Method, MethodId, Step, Subtask, Term};
+use super::{
+    Clause, Compiled, Condition, FactPattern, Goal, Method, MethodId, Step, Subtask, Term,
+};
 
 /// Rounds after which everything should long have settled.
 const ROUNDS: usize = 200;
 
-/// Fills in [`Method::necessary`] of every method.
+/// Fills in [`Method::necessary`] of every method, and [`Compiled::goals`].
 pub(super) fn find(compiled: &mut Compiled) {
     let changes = PossibleChanges::of(compiled);
+    compiled.goals = goals(compiled, &changes);
     // What each task asks for, in terms of its parameters; nothing known yet is "everything",
     // which only shrinks: what all finite decompositions share.
     let mut tasks: Vec<Option<Condition>> = vec![None; compiled.tasks.len()];
@@ -59,6 +62,31 @@ pub(super) fn find(compiled: &mut Compiled) {
             .filter(|clause| !method.precondition.contains(clause))
             .collect();
     }
+}
+
+/// Which tasks of the problem can still help which goal.
+fn goals(compiled: &Compiled, changes: &PossibleChanges) -> Vec<Goal> {
+    let methods = &compiled.task(compiled.top).methods;
+    let (Some(goal), Some(top)) = (compiled.goal, methods.first()) else {
+        return Vec::new();
+    };
+    let top = compiled.method(*top);
+    let mut goals = Vec::new();
+    for clause in &compiled.action(goal).precondition {
+        if let Clause::Fact(positive, fact) = clause {
+            let helps = |subtask: &Subtask| {
+                changes.may(compiled, &top.kinds, subtask, *positive, fact, &|_, _| {
+                    false
+                })
+            };
+            goals.push(Goal {
+                holds: *positive,
+                fact: fact.clone(),
+                last_help: top.subtasks.iter().rposition(helps),
+            });
+        }
+    }
+    goals
 }
 
 /// What must hold when the method is chosen; `None`: more than can be said as yet.

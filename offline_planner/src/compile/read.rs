@@ -150,6 +150,7 @@ impl<'a> Reader<'a> {
             methods,
             top,
             goal,
+            goals: Vec::new(),
             has_costs,
         };
         compiled.fit()?;

@@ -49,6 +49,11 @@ impl Numbers {
         true
     }
 
+    /// Whether the number was put in.
+    pub fn contains(&self, number: u64) -> bool {
+        self.slots[self.place(number.max(1))] != 0
+    }
+
     /// Forgets all.
     pub fn clear(&mut self) {
         self.slots.fill(0);

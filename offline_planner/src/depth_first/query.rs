@@ -1,6 +1,7 @@
 //! Conditions as small programs that list their bindings one after another.
 
 use super::facts::Facts;
+use super::hash::spread;
 use crate::compile::{Compiled, KindId, ObjectId, PredicateId, Term};
 
 /// One step of a query: either binds variables, in several ways one after another, or tests.
@@ -30,6 +31,37 @@ pub(super) enum Step {
     Of(usize, KindId),
     /// Some of these queries has an answer (`true`), or none has.
     Some(bool, Vec<Query>),
+}
+
+/// What queries are asked of.
+#[derive(Clone, Copy, Debug)]
+pub struct AtHand<'a> {
+    pub facts: &'a Facts,
+    pub compiled: &'a Compiled,
+    /// If given, choices are not tried from the first on, but from one that depends on this number
+    /// and on the state.
+    pub chance: Option<u64>,
+}
+
+impl<'a> AtHand<'a> {
+    /// Without chance.
+    pub fn plain(facts: &'a Facts, compiled: &'a Compiled) -> Self {
+        Self {
+            facts,
+            compiled,
+            chance: None,
+        }
+    }
+
+    /// Which of so many choices comes first.
+    fn first_of(&self, choices: usize) -> usize {
+        match self.chance {
+            Some(seed) if choices > 1 => {
+                (spread(seed ^ self.facts.hash()) % choices as u64) as usize
+            }
+            _ => 0,
+        }
+    }
 }
 
 impl Step {
@@ -73,29 +105,26 @@ impl Query {
     /// The first answer: binds what is unbound, and leaves in `cursors` where each choice stands.
     pub fn first(
         &self,
-        facts: &Facts,
-        compiled: &Compiled,
+        at_hand: AtHand<'_>,
         bindings: &mut [ObjectId],
         cursors: &mut [u32],
     ) -> bool {
-        self.run(facts, compiled, bindings, cursors, 0, true)
+        self.run(at_hand, bindings, cursors, 0, true)
     }
 
     /// The next answer after that to which bindings and cursors belong.
     pub fn next(
         &self,
-        facts: &Facts,
-        compiled: &Compiled,
+        at_hand: AtHand<'_>,
         bindings: &mut [ObjectId],
         cursors: &mut [u32],
     ) -> bool {
-        self.run(facts, compiled, bindings, cursors, self.steps.len(), false)
+        self.run(at_hand, bindings, cursors, self.steps.len(), false)
     }
 
     fn run(
         &self,
-        facts: &Facts,
-        compiled: &Compiled,
+        at_hand: AtHand<'_>,
         bindings: &mut [ObjectId],
         cursors: &mut [u32],
         mut at: usize,
@@ -122,7 +151,7 @@ impl Query {
                 }
             }
             let cursor = cursors.get_mut(self.choices_before[at]);
-            forward = take(&self.steps[at], facts, compiled, bindings, cursor);
+            forward = take(&self.steps[at], at_hand, bindings, cursor);
             if forward {
                 at += 1;
             }
@@ -130,13 +159,7 @@ impl Query {
     }
 
     /// Binds again what the cursors stand for. The facts must be those of then.
-    pub fn rebind(
-        &self,
-        facts: &Facts,
-        compiled: &Compiled,
-        bindings: &mut [ObjectId],
-        cursors: &[u32],
-    ) {
+    pub fn rebind(&self, at_hand: AtHand<'_>, bindings: &mut [ObjectId], cursors: &[u32]) {
         for (step, before) in self.steps.iter().zip(&self.choices_before) {
             let mut cursor = cursors
                 .get(*before)
@@ -145,7 +168,7 @@ impl Query {
                 step,
                 Step::Match { .. } | Step::Range { .. } | Step::Assign { .. }
             ) {
-                take(step, facts, compiled, bindings, Some(&mut cursor));
+                take(step, at_hand, bindings, Some(&mut cursor));
             }
         }
     }
@@ -153,8 +176,7 @@ impl Query {
     /// Whether another answer may follow. `false` is certain.
     pub fn may_have_more(
         &self,
-        facts: &Facts,
-        compiled: &Compiled,
+        at_hand: AtHand<'_>,
         bindings: &[ObjectId],
         cursors: &[u32],
     ) -> bool {
@@ -170,9 +192,10 @@ impl Query {
                         ..
                     } => {
                         let key = key.iter().map(|term| term.value(bindings));
-                        facts.table(*predicate).matching(*index, key).len()
+                        let table = at_hand.facts.table(*predicate);
+                        table.matching(*index, key).len()
                     }
-                    Step::Range { kind, .. } => compiled.kind(*kind).members.len(),
+                    Step::Range { kind, .. } => at_hand.compiled.kind(*kind).members.len(),
                     _ => return false,
                 };
                 (cursors[*before] as usize) < total
@@ -183,11 +206,13 @@ impl Query {
 /// Takes the step's next choice that fits; for a test, says whether it holds.
 fn take(
     step: &Step,
-    facts: &Facts,
-    compiled: &Compiled,
+    at_hand: AtHand<'_>,
     bindings: &mut [ObjectId],
     cursor: Option<&mut u32>,
 ) -> bool {
+    let AtHand {
+        facts, compiled, ..
+    } = at_hand;
     match step {
         Step::Match {
             predicate,
@@ -203,7 +228,14 @@ fn take(
             let table = facts.table(*predicate);
             let key = key.iter().map(|term| term.value(bindings));
             let found = table.matching(*index, key);
-            while let Some(place) = found.get(*cursor as usize) {
+            let shift = at_hand.first_of(found.len());
+            while (*cursor as usize) < found.len() {
+                let at = *cursor as usize + shift;
+                let place = &found[if at < found.len() {
+                    at
+                } else {
+                    at - found.len()
+                }];
                 *cursor += 1;
                 let args = table.args(*place);
                 for (place, variable) in binds {
@@ -245,7 +277,7 @@ fn take(
         Step::Some(positive, queries) => {
             queries
                 .iter()
-                .any(|query| query.has_answer(facts, compiled, bindings))
+                .any(|query| query.has_answer(at_hand, bindings))
                 == *positive
         }
     }
@@ -254,12 +286,12 @@ fn take(
 impl Query {
     /// Whether there is an answer. Variables of its own are bound in what lies behind those that
     /// are bound already.
-    fn has_answer(&self, facts: &Facts, compiled: &Compiled, bindings: &mut [ObjectId]) -> bool {
+    fn has_answer(&self, at_hand: AtHand<'_>, bindings: &mut [ObjectId]) -> bool {
         let mut few = [0; 8];
         if self.choices <= few.len() {
-            self.first(facts, compiled, bindings, &mut few)
+            self.first(at_hand, bindings, &mut few)
         } else {
-            self.first(facts, compiled, bindings, &mut vec![0; self.choices])
+            self.first(at_hand, bindings, &mut vec![0; self.choices])
         }
     }
 }

@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 use super::facts::Facts;
 use super::hash::{Numbers, join, spread};
 use super::program::{HeadStep, Program};
+use super::query::AtHand;
 use super::table::FactPlace;
 use crate::compile::{ActionId, Compiled, MethodId, ObjectId, PredicateId, Step, TaskId};
 use crate::control::{Control, Halt, Outcome};
@@ -73,10 +74,20 @@ pub struct DepthFirst {
     met: Numbers,
     /// Tasks that are being decomposed, with the state in which that began; how many of each.
     open: FxHashMap<u64, u32>,
+    /// Tasks, with states, that were ever begun, and those that were ever done.
+    begun: Numbers,
+    done: Numbers,
     /// What was opened (`true`) and closed, to be taken back.
     opened: Vec<(u64, bool)>,
     /// Whether something was left out that may be part of a plan.
     left_out: bool,
+    /// If there is chance in the order of choices, it comes from here.
+    chance: Option<u64>,
+    /// How often everything was tried and led nowhere, and it had to go back.
+    dead_ends: u64,
+    /// For each task of the problem in order, the facts that must hold (or not) once it is done,
+    /// as no later task can help them.
+    settled: Vec<Vec<Settled>>,
     /// How often a task may be begun within itself in one and the same state.
     nesting: u32,
     expanded: u64,
@@ -89,6 +100,14 @@ struct Scratch {
     cursors: Vec<u32>,
     changes: Vec<(PredicateId, FactPlace)>,
     tuple: Vec<ObjectId>,
+}
+
+/// A fact that must hold, or must not.
+#[derive(Debug)]
+struct Settled {
+    holds: bool,
+    predicate: PredicateId,
+    args: Vec<ObjectId>,
 }
 
 /// How one step of the search ended.
@@ -122,8 +141,13 @@ impl DepthFirst {
             bindings: Vec::new(),
             met: Numbers::default(),
             open: FxHashMap::default(),
+            begun: Numbers::default(),
+            done: Numbers::default(),
             opened: Vec::new(),
             left_out: false,
+            chance: None,
+            dead_ends: 0,
+            settled: settled(compiled),
             nesting: 0,
             expanded: 0,
         };
@@ -157,6 +181,7 @@ impl DepthFirst {
                 Advance::On => {}
                 Advance::Solved => return Outcome::Found(self.choices()),
                 Advance::Dead => {
+                    self.dead_ends += 1;
                     if self.back() {
                         continue;
                     }
@@ -167,10 +192,50 @@ impl DepthFirst {
                     self.nesting = self.nesting * 2 + 1;
                     self.left_out = false;
                     self.met.clear();
+                    self.begun.clear();
+                    self.done.clear();
                     self.begin();
                 }
             }
         }
+    }
+
+    /// Begins anew, with chance in the order of choices.
+    pub fn restart(&mut self, seed: u64) {
+        self.facts.undo_to(0);
+        self.forks.clear();
+        self.cursors.clear();
+        self.chosen.clear();
+        self.bindings.clear();
+        self.open.clear();
+        self.opened.clear();
+        self.met = Numbers::default();
+        self.begun = Numbers::default();
+        self.done = Numbers::default();
+        self.left_out = false;
+        self.nesting = 0;
+        self.dead_ends = 0;
+        self.chance = Some(spread(seed));
+        self.begin();
+    }
+
+    /// How often it had to go back since it began (anew).
+    pub fn dead_ends(&self) -> u64 {
+        self.dead_ends
+    }
+
+    /// Whether what the tasks that are done should have brought about is so, as far as nothing that
+    /// is left can help it. Looked at where one task of the problem ends and the next begins.
+    fn is_settled(&self) -> bool {
+        // The subtasks of the top were made first, the last of them first.
+        let place = self.settled.len().checked_sub(self.current as usize);
+        let Some(settled) = place.and_then(|place| self.settled.get(place)) else {
+            return true;
+        };
+        settled.iter().all(|settled| {
+            let args = settled.args.iter().copied();
+            self.facts.holds(settled.predicate, args) == settled.holds
+        })
     }
 
     fn choices(&self) -> Choices {
@@ -189,6 +254,9 @@ impl DepthFirst {
         let Some(node) = self.nodes.get(self.current as usize).copied() else {
             return Advance::Solved;
         };
+        if !self.is_settled() {
+            return Advance::Dead;
+        }
         match node.kind {
             NodeKind::Action(action) => {
                 if !self.execute(action, node) {
@@ -198,6 +266,7 @@ impl DepthFirst {
             }
             NodeKind::Close(number) => {
                 self.close(number);
+                self.done.insert(number);
                 self.opened.push((number, false));
                 self.current = node.next;
             }
@@ -257,21 +326,24 @@ impl DepthFirst {
             if !bind_head(&program.head, &compiled, args, &mut self.scratch.bindings) {
                 continue;
             }
-            let (facts, scratch) = (&self.facts, &mut self.scratch);
+            let at_hand = AtHand {
+                facts: &self.facts,
+                compiled: &compiled,
+                chance: self.chance,
+            };
+            let scratch = &mut self.scratch;
             let (bindings, cursors) = (&mut scratch.bindings, &mut scratch.cursors);
             let found = if std::mem::take(&mut resume) {
-                program.query.rebind(facts, &compiled, bindings, cursors);
-                program.query.next(facts, &compiled, bindings, cursors)
+                program.query.rebind(at_hand, bindings, cursors);
+                program.query.next(at_hand, bindings, cursors)
             } else {
-                program.query.first(facts, &compiled, bindings, cursors)
+                program.query.first(at_hand, bindings, cursors)
             };
             if !found {
                 continue;
             }
             let more = place + 1 < methods.len()
-                || program
-                    .query
-                    .may_have_more(facts, &compiled, bindings, cursors);
+                || program.query.may_have_more(at_hand, bindings, cursors);
             let choices = program.query.choices();
             if after.is_none()
                 && (more || self.expanded.is_multiple_of(LOOK_UP_EVERY))
@@ -315,6 +387,7 @@ impl DepthFirst {
         if self.program.growing[task.index()] {
             let number = self.number_of(self.current);
             *self.open.entry(number).or_insert(0) += 1;
+            self.begun.insert(number);
             self.opened.push((number, true));
             let hash = self.nodes.get(next as usize).map_or(0, |next| next.hash);
             self.nodes.push(Node {
@@ -377,13 +450,15 @@ impl DepthFirst {
         join(self.own_hash(id), self.facts.hash())
     }
 
-    /// Whether the task may be begun within itself in the state in which it already began: only so
-    /// often, or the list would grow for ever.
+    /// Whether the task may be begun in the present state: within itself only so often, or the
+    /// list would grow for ever; and at first not again if it was never brought to an end. (That
+    /// may have been because it was tried within what it is now tried beside.)
     fn may_open(&self, id: u32) -> bool {
         let number = self.number_of(id);
-        self.open
-            .get(&number)
-            .is_none_or(|open| *open <= self.nesting)
+        match self.open.get(&number) {
+            Some(open) => *open <= self.nesting,
+            None => self.nesting > 0 || !self.begun.contains(number) || self.done.contains(number),
+        }
     }
 
     fn close(&mut self, number: u64) {
@@ -404,21 +479,21 @@ impl DepthFirst {
         let (bindings, cursors) = (&mut scratch.bindings, &mut scratch.cursors);
         bindings[..count].copy_from_slice(&self.args[first..first + count]);
         let mut kinds = compiled.action(action).kinds.iter().zip(&*bindings);
-        if !kinds.all(|(kind, object)| compiled.kind(*kind).contains(*object))
-            || !program
-                .precondition
-                .first(&self.facts, compiled, bindings, cursors)
-        {
+        if !kinds.all(|(kind, object)| compiled.kind(*kind).contains(*object)) {
+            return false;
+        }
+        let at_hand = AtHand::plain(&self.facts, compiled);
+        if !program.precondition.first(at_hand, bindings, cursors) {
             return false;
         }
         // Everything is decided in the state in which the action begins.
         scratch.changes.clear();
         let mut removals = 0;
         for change in &program.effect {
-            let mut more = change
-                .when
-                .as_ref()
-                .is_none_or(|when| when.first(&self.facts, compiled, bindings, cursors));
+            let mut more = match &change.when {
+                Some(when) => when.first(AtHand::plain(&self.facts, compiled), bindings, cursors),
+                None => true,
+            };
             while more {
                 let tuple = &mut scratch.tuple;
                 tuple.clear();
@@ -428,10 +503,12 @@ impl DepthFirst {
                     scratch.changes.push((change.predicate, place));
                     removals += usize::from(!change.adds);
                 }
-                more = change
-                    .when
-                    .as_ref()
-                    .is_some_and(|when| when.next(&self.facts, compiled, bindings, cursors));
+                more = match &change.when {
+                    Some(when) => {
+                        when.next(AtHand::plain(&self.facts, compiled), bindings, cursors)
+                    }
+                    None => false,
+                };
             }
         }
         // Removals come first in the list.
@@ -454,6 +531,8 @@ impl DepthFirst {
             + self.open.capacity() * size_of::<(u64, u32)>()
             + self.opened.capacity() * size_of::<(u64, bool)>()
             + self.met.bytes()
+            + self.begun.bytes()
+            + self.done.bytes()
             + self.facts.bytes()
     }
 }
@@ -472,4 +551,24 @@ fn bind_head(
         }
         HeadStep::Is(term) => term.value(bindings) == *arg,
     })
+}
+
+/// For each subtask of the top, what must be so when it begins.
+fn settled(compiled: &Compiled) -> Vec<Vec<Settled>> {
+    let methods = &compiled.task(compiled.top).methods;
+    let count = methods
+        .first()
+        .map_or(0, |top| compiled.method(*top).subtasks.len());
+    let mut settled: Vec<Vec<Settled>> = (0..count).map(|_| Vec::new()).collect();
+    for goal in &compiled.goals {
+        let from = goal.last_help.map_or(0, |last| last + 1);
+        for settled in settled.iter_mut().skip(from) {
+            settled.push(Settled {
+                holds: goal.holds,
+                predicate: goal.fact.predicate,
+                args: goal.fact.args.iter().map(|term| term.value(&[])).collect(),
+            });
+        }
+    }
+    settled
 }
