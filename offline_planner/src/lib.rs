@@ -10,6 +10,7 @@ mod ground;
 mod heuristic;
 pub mod informed;
 pub mod plan;
+mod portfolio;
 mod solve;
 
 pub use control::{Control, Halt, Outcome};

@@ -1,18 +1,14 @@
 //! The one entrance: a domain and a problem in, a verdict out.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use agent_core::model::{Cost, Domain, Instance};
 
 use crate::compile::{Compiled, Unfit};
-use crate::control::{Control, Halt, Outcome};
-use crate::depth_first::DepthFirst;
 use crate::plan::Solution;
-
-/// Searches run for so long before anybody is told how it goes.
-const SLICE: Duration = Duration::from_millis(100);
+use crate::portfolio::Run;
 
 /// What is asked of the planner.
 #[derive(Clone, Debug)]
@@ -82,49 +78,11 @@ pub fn solve(
             "a task has no method that could ever be used",
         ));
     }
-    let expanded = AtomicU64::new(0);
-    let deadline = options.time_limit.map(|limit| begin + limit);
-    let mut depth_first = DepthFirst::new(&compiled);
-    loop {
-        let slice = Instant::now() + SLICE;
-        let control = Control {
-            stop,
-            deadline: Some(deadline.map_or(slice, |deadline| deadline.min(slice))),
-            memory_limit_bytes: options.memory_limit_bytes,
-            expanded: &expanded,
-            seed: options.seed,
-        };
-        match depth_first.run(&control) {
-            Outcome::Found(choices) => {
-                return Ok(match Solution::new(&compiled, &choices) {
-                    Some(solution) => Verdict::Plan(Box::new(solution)),
-                    None => Verdict::Unknown("a search made no sense; this is a bug"),
-                });
-            }
-            Outcome::Unsolvable => {
-                return Ok(Verdict::Unsolvable(
-                    "every way was tried, and none leads to a plan",
-                ));
-            }
-            Outcome::Stopped(Halt::Memory) => {
-                return Ok(Verdict::Unknown("more memory is needed"));
-            }
-            Outcome::Stopped(Halt::Incomplete) => {
-                return Ok(Verdict::Unknown("the search has left something out"));
-            }
-            Outcome::Stopped(Halt::Told) => {}
-        }
-        if stop.load(Ordering::Relaxed) {
-            return Ok(Verdict::Unknown("stopped"));
-        }
-        if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
-            return Ok(Verdict::Unknown("the time is over"));
-        }
-        progress(&Progress {
-            elapsed: begin.elapsed(),
-            phase: "depth first",
-            expanded: expanded.load(Ordering::Relaxed),
-            best: None,
-        });
-    }
+    let run = Run {
+        compiled,
+        options,
+        begin,
+        stop,
+    };
+    Ok(run.verdict(progress))
 }

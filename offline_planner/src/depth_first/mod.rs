@@ -8,7 +8,9 @@ mod hash;
 mod order;
 mod program;
 mod query;
+mod restarts;
 mod search;
 mod table;
 
+pub use restarts::Restarts;
 pub use search::DepthFirst;

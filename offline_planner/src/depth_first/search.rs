@@ -85,6 +85,8 @@ pub struct DepthFirst {
     chance: Option<u64>,
     /// How often everything was tried and led nowhere, and it had to go back.
     dead_ends: u64,
+    /// After so many dead ends it gives up.
+    patience: u64,
     /// For each task of the problem in order, the facts that must hold (or not) once it is done,
     /// as no later task can help them.
     settled: Vec<Vec<Settled>>,
@@ -147,6 +149,7 @@ impl DepthFirst {
             left_out: false,
             chance: None,
             dead_ends: 0,
+            patience: u64::MAX,
             settled: settled(compiled),
             nesting: 0,
             expanded: 0,
@@ -182,6 +185,9 @@ impl DepthFirst {
                 Advance::Solved => return Outcome::Found(self.choices()),
                 Advance::Dead => {
                     self.dead_ends += 1;
+                    if self.dead_ends > self.patience {
+                        return Outcome::Stopped(Halt::Incomplete);
+                    }
                     if self.back() {
                         continue;
                     }
@@ -200,8 +206,9 @@ impl DepthFirst {
         }
     }
 
-    /// Begins anew, with chance in the order of choices.
-    pub fn restart(&mut self, seed: u64) {
+    /// Begins anew, with chance in the order of choices, and for so many dead ends; then
+    /// [`DepthFirst::run`] ends with [`Halt::Incomplete`].
+    pub fn restart(&mut self, seed: u64, patience: u64) {
         self.facts.undo_to(0);
         self.forks.clear();
         self.cursors.clear();
@@ -215,13 +222,9 @@ impl DepthFirst {
         self.left_out = false;
         self.nesting = 0;
         self.dead_ends = 0;
+        self.patience = patience;
         self.chance = Some(spread(seed));
         self.begin();
-    }
-
-    /// How often it had to go back since it began (anew).
-    pub fn dead_ends(&self) -> u64 {
-        self.dead_ends
     }
 
     /// Whether what the tasks that are done should have brought about is so, as far as nothing that
