@@ -24,6 +24,12 @@ pub trait Inspect {
         json!({})
     }
 
+    /// What it could do instead for each of its goals, with what that hangs on, and why it does what
+    /// it does. Takes some planning to tell.
+    fn alternatives(&self) -> Value {
+        json!([])
+    }
+
     /// What is published at regular intervals, if the wiring asks for it: where everything is.
     fn snapshot(&self) -> Value {
         self.status()
@@ -41,11 +47,19 @@ pub enum View {
     Plans,
     /// [`Inspect::stack`].
     Stack,
+    /// [`Inspect::alternatives`].
+    Alternatives,
 }
 
 impl View {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Status, Self::Belief, Self::Plans, Self::Stack];
+    pub const ALL: [Self; 5] = [
+        Self::Status,
+        Self::Belief,
+        Self::Plans,
+        Self::Stack,
+        Self::Alternatives,
+    ];
 
     /// As it stands in the key.
     pub fn name(self) -> &'static str {
@@ -54,6 +68,7 @@ impl View {
             Self::Belief => "belief",
             Self::Plans => "plans",
             Self::Stack => "stack",
+            Self::Alternatives => "alternatives",
         }
     }
 
@@ -64,6 +79,7 @@ impl View {
             Self::Belief => machine.belief(),
             Self::Plans => machine.plans(),
             Self::Stack => machine.stack(),
+            Self::Alternatives => machine.alternatives(),
         }
     }
 }

@@ -7,6 +7,7 @@ use agent_core::protocol::Urgency;
 use serde_json::{Value, json};
 
 use crate::inspect::Inspect;
+use crate::inspect_alternatives::alternatives;
 
 impl<P: Planner> Inspect for Agent<P> {
     fn status(&self) -> Value {
@@ -60,6 +61,10 @@ impl<P: Planner> Inspect for Agent<P> {
         }
     }
 
+    fn alternatives(&self) -> Value {
+        alternatives(self)
+    }
+
     fn stack(&self) -> Value {
         let entries = self.stack().entries().iter().map(|entry| {
             let intention = &entry.intention;
@@ -84,7 +89,7 @@ impl<P: Planner> Inspect for Agent<P> {
     }
 }
 
-fn goal(goal: &Goal) -> Value {
+pub(crate) fn goal(goal: &Goal) -> Value {
     let mut shown = json!({
         "id": goal.id.as_str(),
         "tasks": texts(&goal.tasks),
@@ -116,7 +121,7 @@ fn plans(intention: &Intention) -> Value {
     plans.collect()
 }
 
-fn texts<'a>(atoms: impl IntoIterator<Item = &'a Atom>) -> Vec<String> {
+pub(crate) fn texts<'a>(atoms: impl IntoIterator<Item = &'a Atom>) -> Vec<String> {
     atoms.into_iter().map(ToString::to_string).collect()
 }
 

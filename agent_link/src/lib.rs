@@ -58,6 +58,7 @@ mod facts;
 mod incoming;
 mod inspect;
 mod inspect_agent;
+mod inspect_alternatives;
 mod keys;
 mod link;
 mod mailbox;

@@ -252,10 +252,11 @@ pub(crate) enum DoorState {
 
 #[derive(Args, Clone, Debug)]
 pub(crate) struct StatusArgs {
-    /// Show all plans that are kept, with their costs.
+    /// Show the plans for every goal: what each costs and hangs on, why one is followed, and what it
+    /// would take for a better one.
     #[arg(long)]
     pub(crate) plans: bool,
-    /// Answer with JSON: status, stack, plans and belief of every agent.
+    /// Answer with JSON: status, stack, plans and belief of every agent; with --plans, alternatives.
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]

@@ -6,6 +6,9 @@ use crate::planner::{
     Considered, Item, Plan, Planner, Reliance, Settings, WhatIf, consider, hangs_on, simulate,
 };
 
+/// So many slices of planning an answer may take.
+const SLICES: u64 = 3;
+
 /// Where a goal is.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum GoalPlace {
@@ -81,10 +84,11 @@ impl<P: Planner> Agent<P> {
     /// first, then those that wait. Changes nothing.
     ///
     /// What is not kept is looked for by planning from scratch in the present belief, with no more
-    /// expansions for all goals than a slice of planning has (decision 9), so that an agent that is asked
-    /// is still an agent that listens.
+    /// expansions for all goals together than a few slices of planning have (decision 9), so that an
+    /// agent that is asked is still an agent that listens.
     pub fn alternatives(&self) -> Vec<Alternatives<'_>> {
-        let mut budget = self.configuration.policy.expansions_per_slice;
+        let slice = self.configuration.policy.expansions_per_slice;
+        let mut budget = slice.saturating_mul(SLICES);
         let stacked = self.stack.entries().iter().rev();
         let aside = self.aside.goals().iter();
         let waiting = self.waiting.intentions().iter();
@@ -106,6 +110,7 @@ impl<P: Planner> Agent<P> {
         budget: &mut u64,
     ) -> Alternatives<'a> {
         let problem = self.problem_of(Some(intention));
+        let wanted = Settings::default().alternatives;
         // The action that runs has begun: the first step of the first plan, if it is still that.
         let executing = match place {
             GoalPlace::Running => self.executing().map(|(_, action, _)| action),
@@ -140,7 +145,14 @@ impl<P: Planner> Agent<P> {
             expanded,
         } = match in_full && intention.cancelled.is_none() {
             true => {
-                let settings = Settings::default();
+                // To know what a better plan wants, the best is enough.
+                let settings = match plans.iter().filter(|plan| plan.broken.is_none()).count() {
+                    valid if valid >= wanted => Settings {
+                        alternatives: 1,
+                        ..Settings::default()
+                    },
+                    _ => Settings::default(),
+                };
                 consider(&problem, &intention.agendas, settings, best, *budget)
             }
             false => Considered::default(),
@@ -155,7 +167,7 @@ impl<P: Planner> Agent<P> {
         if let Some((_, others)) = plans.split_first_mut() {
             others.sort_by_key(|plan| (plan.broken.is_some(), plan.cost));
         }
-        plans.truncate(Settings::default().alternatives.max(intention.plans.len()));
+        plans.truncate(wanted.max(intention.plans.len()));
         Alternatives {
             choice: (intention.plans.first()).and_then(|_| choice(&plans)),
             intention,

@@ -60,7 +60,7 @@ pub fn consider(
         alternatives: 1,
         ..settings
     };
-    let mut cheaper_with = |wanted: &BTreeSet<Fact>| {
+    let mut with = |wanted: &BTreeSet<Fact>| {
         let changes = wanted
             .iter()
             .map(|fact| (fact, !problem.belief.holds(fact)));
@@ -69,11 +69,12 @@ pub fn consider(
         let outcome = plan(&problem, agendas, one, left);
         considered.complete &= outcome.is_some();
         considered.expanded += outcome.as_ref().map_or(left, |outcome| outcome.expanded);
-        let plan = outcome?.plans.into_iter().next()?;
-        best.is_none_or(|best| plan.cost < best)
-            .then_some((plan, problem))
+        let plan = outcome.map(|outcome| outcome.plans.into_iter().next());
+        (plan, problem)
     };
-    let Some((plan, otherwise)) = cheaper_with(&missing) else {
+    let cheaper = |plan: &Plan| best.is_none_or(|best| plan.cost < best);
+    let (found, otherwise) = with(&missing);
+    let Some(plan) = found.flatten().filter(cheaper) else {
         return considered;
     };
     let needed: BTreeSet<Fact> = hangs_on(&otherwise, &plan.steps, false)
@@ -81,10 +82,12 @@ pub fn consider(
         .map(|reliance| reliance.fact)
         .filter(|fact| missing.contains(fact))
         .collect();
-    // What only methods ask for is not to be seen in the steps.
-    let (needed, plan) = match cheaper_with(&needed) {
-        Some((plan, _)) => (needed, plan),
-        None => (missing, plan),
+    let (needed, plan) = match with(&needed).0 {
+        Some(Some(confirmed)) if cheaper(&confirmed) => (needed, confirmed),
+        // What only methods ask for is not to be seen in the steps.
+        Some(_) => (missing, plan),
+        // Out of budget. That the plan can be carried out is known.
+        None => (needed, plan),
     };
     let change = |fact: Fact| match problem.belief.holds(&fact) {
         true => FactChange::Remove(fact),

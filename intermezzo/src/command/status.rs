@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 
 use crate::cli::StatusArgs;
 use crate::exit::{Exit, Failure};
+use crate::show::alternatives;
 use crate::style::{ASIDE, BOLD, DIM, GOOD, URGENT};
 use crate::target::{Connection, unanswered};
 
@@ -18,7 +19,7 @@ const FACTS_SHOWN: usize = 12;
 
 pub(crate) async fn run(args: StatusArgs) -> Result<Exit, Failure> {
     let connection = Connection::open(&args.target).await?;
-    let looked = look_at_all(&connection).await;
+    let looked = look_at_all(&connection, args.plans).await;
     let agents = connection.close(looked).await?;
     if args.json {
         anstream::println!(
@@ -32,7 +33,7 @@ pub(crate) async fn run(args: StatusArgs) -> Result<Exit, Failure> {
 }
 
 /// Name and views of every agent that is there.
-async fn look_at_all(connection: &Connection) -> Result<Map<String, Value>, Failure> {
+async fn look_at_all(connection: &Connection, plans: bool) -> Result<Map<String, Value>, Failure> {
     let mut names: Vec<String> = connection
         .client
         .alive()
@@ -55,15 +56,17 @@ async fn look_at_all(connection: &Connection) -> Result<Map<String, Value>, Fail
     }
     let mut agents = Map::new();
     for name in names {
-        let views = look_at(&connection.client, &name).await?;
+        let views = look_at(&connection.client, &name, plans).await?;
         agents.insert(name, views);
     }
     Ok(agents)
 }
 
-async fn look_at(client: &Client, agent: &str) -> Result<Value, Failure> {
+/// Alternatives take the agent some planning: they are asked for only if they are wanted.
+async fn look_at(client: &Client, agent: &str, plans: bool) -> Result<Value, Failure> {
     let mut views = Map::new();
-    for view in View::ALL {
+    let wanted = |view: &View| plans || *view != View::Alternatives;
+    for view in View::ALL.into_iter().filter(wanted) {
         let seen = client.look(agent, view).await.map_err(unanswered)?;
         views.insert(view.name().to_owned(), seen);
     }
@@ -112,14 +115,24 @@ fn agent(text: &mut String, name: &str, views: &Value, with_plans: bool) {
             let _ = writeln!(text, "{DIM}nothing to do{DIM:#}");
         }
     }
-    show_plans(text, &views["plans"], with_plans);
+    if with_plans {
+        text.push_str(&of_goal(views, &running["id"]));
+    } else {
+        show_plan(text, &views["plans"]);
+    }
     let stack = list(&views["stack"]);
     for entry in stack.iter().rev() {
-        suspended(text, entry, with_plans);
+        suspended(text, entry);
+        if with_plans {
+            text.push_str(&of_goal(views, &entry["id"]));
+        }
     }
     for waiting in list(&status["waiting"]) {
         let goal = goal_words(waiting).unwrap_or_default();
         let _ = writeln!(text, "         {DIM}…{DIM:#} waits for its turn: {goal}");
+        if with_plans {
+            text.push_str(&of_goal(views, &waiting["id"]));
+        }
     }
     for aside in list(&status["aside"]) {
         let goal = goal_words(aside).unwrap_or_default();
@@ -135,11 +148,21 @@ fn agent(text: &mut String, name: &str, views: &Value, with_plans: bool) {
                 "         {ASIDE}■ blocked{ASIDE:#}: {goal} waits for {facts}"
             )
         };
+        if with_plans {
+            text.push_str(&of_goal(views, &aside["id"]));
+        }
     }
     belief(text, &views["belief"]);
 }
 
-fn suspended(text: &mut String, entry: &Value, with_plans: bool) {
+/// The alternatives for the goal of this name.
+fn of_goal(views: &Value, id: &Value) -> String {
+    let mut goals = list(&views["alternatives"]).iter();
+    let goal = goals.find(|goal| !id.is_null() && goal["id"] == *id);
+    goal.map(alternatives).unwrap_or_default()
+}
+
+fn suspended(text: &mut String, entry: &Value) {
     // A controller's records have no goals.
     let what = goal_words(entry)
         .or_else(|| entry["action"].as_str().map(str::to_owned))
@@ -165,14 +188,11 @@ fn suspended(text: &mut String, entry: &Value, with_plans: bool) {
         text,
         "         {ASIDE}‖ set aside{by}{ASIDE:#}: {what}{in_the_middle}{holds}"
     );
-    if with_plans {
-        show_plans(text, &entry["plans"], true);
-    }
 }
 
-fn show_plans(text: &mut String, plans: &Value, all: bool) {
-    let plans = list(plans);
-    for plan in plans.iter().take(if all { plans.len() } else { 1 }) {
+/// The plan that is followed.
+fn show_plan(text: &mut String, plans: &Value) {
+    if let Some(plan) = list(plans).first() {
         let rest = match words(&plan["rest"]).as_str() {
             "" => String::new(),
             rest => format!(" … {rest}"),

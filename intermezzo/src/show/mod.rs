@@ -1,5 +1,6 @@
 //! Showing what a robot does, while it does it.
 
+mod alternatives;
 mod json;
 mod people;
 mod progress;
@@ -18,6 +19,7 @@ use crate::robot::{Robot, RoleKind, RoleNews};
 use crate::scenario::{Player, Told};
 use crate::snapshot::Snapshot;
 
+pub(crate) use alternatives::alternatives;
 pub(crate) use json::JsonLines;
 pub(crate) use people::ForPeople;
 pub(crate) use words::resumption;

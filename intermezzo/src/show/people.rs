@@ -284,7 +284,7 @@ impl Screen for ForPeople {
     }
 }
 
-fn width() -> usize {
+pub(super) fn width() -> usize {
     match console::Term::stdout().size_checked() {
         Some((_, columns)) => usize::from(columns),
         None => USUAL_WIDTH,
@@ -292,10 +292,15 @@ fn width() -> usize {
 }
 
 /// Text in rows, broken between words: an HDDL expression without parts is one word.
-fn wrapped(text: &str, width: usize) -> Vec<String> {
+pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
     if width < NARROWEST - MARGIN {
         return vec![text.to_owned()];
     }
+    rows(text, width)
+}
+
+/// The same, however narrow it is.
+pub(super) fn rows(text: &str, width: usize) -> Vec<String> {
     let mut rows: Vec<String> = Vec::new();
     let mut length = 0;
     for word in words(text) {

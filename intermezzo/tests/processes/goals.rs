@@ -1,5 +1,7 @@
 //! Goals that are asked for with the command, while the robot is at work.
 
+use serde_json::Value;
+
 use crate::harness::User;
 
 #[tokio::test(flavor = "multi_thread")]
@@ -14,6 +16,7 @@ async fn one_emergency_and_another_within_it() {
         let suspended = up.until_goal("tour", "goal_suspended").await;
         assert_eq!(suspended["stack_depth"], 1);
         up.until_goal("toilet", "action_started").await;
+        the_plans_of_both_can_be_seen(&user).await;
         user.ok(&["goal", "(go n13)", "-e", "--id", "nursing"])
             .await;
         let begun = up.until_goal("nursing", "goal_started").await;
@@ -29,6 +32,28 @@ async fn one_emergency_and_another_within_it() {
     }
     let status = user.ok(&["status"]).await.out;
     assert!(status.contains("at n40"), "{status}");
+}
+
+/// What each costs and hangs on, and that the tour is to go on where it was stopped.
+async fn the_plans_of_both_can_be_seen(user: &User) {
+    let told = user.ok(&["status", "--plans", "--json"]).await.out;
+    let told: Value = serde_json::from_str(&told).unwrap();
+    let goals = told["agents"]["parent"]["alternatives"].as_array().unwrap();
+    let of = |id: &str| goals.iter().find(|goal| goal["id"] == id).unwrap();
+    let (toilet, tour) = (of("toilet"), of("tour"));
+    assert_eq!(toilet["place"], "running", "{told}");
+    let plan = &toilet["plans"][0];
+    assert!(plan["cost"].as_f64().unwrap() > 0.0, "{told}");
+    let hangs_on = plan["hangs_on"].as_array().unwrap();
+    let door = |it: &&Value| it["changes_alone"] == true && it["holds"] == true;
+    assert!(hangs_on.iter().any(|it| door(&it)), "{told}");
+    assert_eq!(tour["place"], "suspended", "{told}");
+    let resumed = tour["choice"]["resumes"].as_str().unwrap();
+    assert!(resumed.starts_with("(enter area1 area3"), "{told}");
+    let told = user.ok(&["status", "--plans"]).await.out;
+    for words in ["hangs on", "follows the first", "(open door"] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
 }
 
 #[tokio::test(flavor = "multi_thread")]

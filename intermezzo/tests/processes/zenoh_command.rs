@@ -58,6 +58,15 @@ async fn a_put_and_a_get_of_the_zenoh_command_are_goals() {
     assert!(answer.contains(r#""accepted":true"#), "{answer}");
     up.until_goal("desk", "goal_succeeded").await;
 
+    let plans = "intermezzo/robot/parent/alternatives";
+    let answer = zenoh(
+        &command,
+        &endpoint,
+        &["get", "-s", plans, "--decoder", "text"],
+    )
+    .await;
+    assert!(answer.contains(r#""alternatives":["#), "{answer}");
+
     let unknown = [
         "get",
         "-s",
