@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 use rpds::RedBlackTreeSetSync;
@@ -35,35 +36,100 @@ impl fmt::Display for FactChange {
 /// A copy shares what is the same, so that copying costs next to nothing, however much is believed,
 /// and a change of the copy costs as little as the change.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(from = "Written")]
 pub struct Belief {
     facts: RedBlackTreeSetSync<Fact>,
     #[serde(with = "values_as_list")]
     values: Arc<BTreeMap<Fact, f64>>,
     /// Functions whose values are too many to list.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     landmarks: Vec<Arc<Landmarks>>,
+    /// The sum over all facts and values; see [`fingerprint`](Self::fingerprint).
+    #[serde(skip_serializing)]
+    fingerprint: u64,
+}
+
+/// A belief on the wire.
+#[derive(Default, Deserialize)]
+struct Written {
+    facts: RedBlackTreeSetSync<Fact>,
+    #[serde(with = "values_as_list")]
+    values: Arc<BTreeMap<Fact, f64>>,
+    #[serde(default)]
+    landmarks: Vec<Arc<Landmarks>>,
+}
+
+impl From<Written> for Belief {
+    fn from(written: Written) -> Self {
+        let facts = written.facts.iter().map(Self::fingerprint_of);
+        let values = written
+            .values
+            .iter()
+            .map(|(function, value)| Self::fingerprint_of_value(function, *value));
+        Self {
+            fingerprint: facts.chain(values).fold(0, u64::wrapping_add),
+            facts: written.facts,
+            values: written.values,
+            landmarks: written.landmarks,
+        }
+    }
 }
 
 impl Belief {
     /// Applies one change and says whether anything is different now.
     pub fn apply(&mut self, change: &FactChange) -> bool {
-        match change {
+        let (before, after) = match change {
             FactChange::Add(fact) => {
-                let is_new = !self.facts.contains(fact);
-                if is_new {
-                    self.facts.insert_mut(fact.clone());
+                if self.facts.contains(fact) {
+                    return false;
                 }
-                is_new
+                self.facts.insert_mut(fact.clone());
+                (0, Self::fingerprint_of(fact))
             }
-            FactChange::Remove(fact) => self.facts.remove_mut(fact),
+            FactChange::Remove(fact) => {
+                if !self.facts.remove_mut(fact) {
+                    return false;
+                }
+                (Self::fingerprint_of(fact), 0)
+            }
             FactChange::Set(function, value) => {
-                let is_new = self.values.get(function) != Some(value);
-                if is_new {
-                    Arc::make_mut(&mut self.values).insert(function.clone(), *value);
+                let before = self.values.get(function).copied();
+                if before == Some(*value) {
+                    return false;
                 }
-                is_new
+                Arc::make_mut(&mut self.values).insert(function.clone(), *value);
+                let print = |value| Self::fingerprint_of_value(function, value);
+                (before.map_or(0, print), print(*value))
             }
-        }
+        };
+        self.count(before, after);
+        true
+    }
+
+    fn count(&mut self, before: u64, after: u64) {
+        let without = self.fingerprint.wrapping_sub(before);
+        self.fingerprint = without.wrapping_add(after);
+    }
+
+    /// A number that beliefs with equal facts and values share and others do not, but for a chance
+    /// of one in 2^64. It does not depend on how the belief came about and is the same in every run.
+    pub fn fingerprint(&self) -> u64 {
+        self.fingerprint
+    }
+
+    /// What a fact adds to the fingerprint.
+    pub(crate) fn fingerprint_of(fact: &Fact) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        fact.hash(&mut hasher);
+        hasher.finish()
+    }
+
+    /// What the value of a function adds to the fingerprint.
+    pub(crate) fn fingerprint_of_value(function: &Fact, value: f64) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        // Zero has two signs.
+        (function, (value + 0.0).to_bits()).hash(&mut hasher);
+        hasher.finish()
     }
 
     /// Applies all changes in order and returns those that made a difference.
@@ -104,7 +170,7 @@ impl Belief {
             .cloned()
             .collect();
         for fact in &taken {
-            self.facts.remove_mut(fact);
+            self.apply(&FactChange::Remove(fact.clone()));
         }
         taken
     }
@@ -140,10 +206,10 @@ impl Belief {
 
 impl FromIterator<Fact> for Belief {
     fn from_iter<I: IntoIterator<Item = Fact>>(facts: I) -> Self {
-        Self {
+        Self::from(Written {
             facts: facts.into_iter().collect(),
-            ..Self::default()
-        }
+            ..Written::default()
+        })
     }
 }
 
@@ -161,8 +227,11 @@ impl FromIterator<FactChange> for Belief {
             }
         }
         // Built at once, which takes less room than one after the other.
-        belief.values = Arc::new(values.into_iter().collect());
-        belief
+        Self::from(Written {
+            facts: belief.facts,
+            values: Arc::new(values.into_iter().collect()),
+            landmarks: Vec::new(),
+        })
     }
 }
 

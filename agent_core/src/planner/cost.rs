@@ -27,6 +27,19 @@ pub(super) fn cost_of(view: View<'_>, action: &Action) -> Cost {
             return cost;
         }
     }
+    cost_by_operator(view, action)
+}
+
+/// What an action costs in any state, if that is known; nothing for a task.
+pub(super) fn least_cost_of(view: View<'_>, action: &Action) -> Cost {
+    let model = view.problem.model.actions.get(&action.name);
+    match model.is_some_and(|model| !model.costs.is_empty()) {
+        true => Cost::ZERO,
+        false => cost_by_operator(view, action),
+    }
+}
+
+fn cost_by_operator(view: View<'_>, action: &Action) -> Cost {
     let operator = view.problem.domain.operators.get(&action.name);
     operator
         .and_then(|operator| {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::Problem;
-use super::cost::cost_of;
+use super::cost::{cost_of, least_cost_of};
 use super::matching::for_each_binding;
 use super::network::{Item, TaskList};
 use super::state::{Delta, View, bind_arguments};
@@ -13,27 +13,28 @@ use crate::model::{Cost, Pattern, Symbol, Term};
 /// the execution model is.
 ///
 /// Each task is estimated in the state that the one before it leaves: an action by its effect, an
-/// abstract task by what it establishes.
+/// abstract task by what it establishes. After a task of which that is not known only those
+/// actions count that cost the same everywhere.
 pub(super) fn estimate(problem: &Problem, delta: &Delta, tasks: &TaskList) -> Cost {
-    let mut state = delta.clone();
+    let mut state = Some(delta.clone());
     let mut total = Cost::ZERO;
     let mut left = tasks.len();
     for item in tasks.items() {
         left -= 1;
-        let view = View {
-            problem,
-            delta: &state,
+        let Some(delta) = &state else {
+            let view = View { problem, delta };
+            total = total + least_cost_of(view, item.atom());
+            continue;
         };
+        let view = View { problem, delta };
         let (cost, after) = estimate_one(view, item, left > 0);
         total = total + cost;
-        if let Some(after) = after {
-            state = after;
-        }
+        state = after;
     }
     total
 }
 
-/// The estimate of one item, and if `go_on`, the state after it.
+/// The estimate of one item, and if `go_on`, the state after it, if that is known.
 fn estimate_one(view: View<'_>, item: &Item, go_on: bool) -> (Cost, Option<Delta>) {
     let task = item.atom();
     if let Some(operator) = view.problem.domain.operators.get(&task.name) {

@@ -3,6 +3,7 @@
 mod cost;
 mod decompose;
 mod estimate;
+mod graph;
 mod hangs_on;
 pub mod invariants;
 mod matching;
@@ -20,6 +21,7 @@ mod state;
 mod typing;
 mod what_if;
 
+pub use graph::GraphPlanner;
 pub use hangs_on::{Reliance, hangs_on};
 pub use naive::NaivePlanner;
 pub use network::{Frame, Item, TaskList};
@@ -33,7 +35,7 @@ pub use what_if::{Considered, WhatIf, consider};
 
 use std::collections::BTreeSet;
 
-use crate::model::Fact;
+use crate::model::{Fact, FactChange};
 
 /// How far a plan is decomposed before it may be followed.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -86,6 +88,8 @@ pub struct Outcome {
     pub wanted: BTreeSet<Fact>,
     /// Nodes that were expanded.
     pub expanded: u64,
+    /// How many of them to find the best plan; the others were for alternatives to it.
+    pub expanded_for_best: u64,
 }
 
 /// Something that finds plans, in slices, so that planning never blocks listening (decision 9).
@@ -104,4 +108,10 @@ pub trait Planner {
 
     /// Gives up what was begun.
     fn stop(&mut self);
+
+    /// The belief has changed, in this order. Whoever tells a planner of every change gets
+    /// [`begin`](Self::begin) for the price of what has changed; a planner that was not told finds
+    /// out by comparing, which takes as long as the belief is large. Planning that is under way
+    /// goes on from the new belief, or begins anew.
+    fn observe(&mut self, _changes: &[FactChange]) {}
 }

@@ -164,10 +164,15 @@ impl Search {
                 return None;
             }
         }
+        let found = !self.plans.is_empty();
         Some(Outcome {
             plans: std::mem::take(&mut self.plans),
             wanted: std::mem::take(&mut self.wanted),
             expanded: self.expansions,
+            expanded_for_best: match found {
+                true => self.expansions_of_best,
+                false => self.expansions,
+            },
         })
     }
 
@@ -183,9 +188,12 @@ impl Search {
             &mut self.wanted,
         );
         for next in found {
-            // One millionth for a decomposition, so that none is free and every search in a
-            // finite space of states ends.
-            let cost = next.step.as_ref().map_or(Cost(1), |step| step.cost);
+            // One millionth at least, so that nothing is free and every search in a finite space
+            // of states ends.
+            let cost = next
+                .step
+                .as_ref()
+                .map_or(Cost(1), |step| step.cost.max(Cost(1)));
             self.add(next.delta, next.tasks, spent + cost, Some(index), next.step);
         }
     }

@@ -1,0 +1,321 @@
+//! The plan graph: what was found out about tasks and states is kept, and only what a change bears
+//! on is found out again.
+//!
+//! A node is a list of tasks in a state (`nodes`), the state being what is believed overlaid with
+//! what the actions on the way have brought about (`world`, `eval`). Every question that was asked
+//! of the belief is remembered, so that a change reaches exactly the nodes that it may concern.
+//! Costs are costs to the end: an action that is carried out moves the root and changes none of
+//! them. Goals that are suspended are further roots of the same graph.
+
+mod alternatives;
+mod code;
+mod decompose;
+mod eval;
+mod facts;
+mod intern;
+mod lists;
+mod nodes;
+mod replay;
+mod search;
+mod world;
+
+#[cfg(test)]
+mod check;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use alternatives::Alternatives;
+use intern::NONE;
+use nodes::{Graph, INFINITE, Work};
+use replay::Replay;
+use search::{Search, Step, walk};
+use world::{Key, Touched, World};
+
+use super::invariants::mutex_groups;
+use super::{Agenda, Outcome, Planner, Problem, Settings};
+use crate::model::{Fact, FactChange};
+
+/// What one expansion counts, in visits of nodes that are known and repairs of costs.
+const VISITS_PER_EXPANSION: u64 = 8;
+/// How many maps are kept in mind.
+const GRAPHS: usize = 4;
+
+/// The incremental planner.
+///
+/// Answers as [`NaivePlanner`](super::NaivePlanner) does, up to plans of the same cost, but from
+/// what it already knows.
+#[derive(Clone, Debug)]
+pub struct GraphPlanner {
+    settings: Settings,
+    next_frame: u64,
+    /// One for each map, domain and execution model; the one used last is the last.
+    graphs: Vec<Graph>,
+    thinking: Option<Thinking>,
+    /// Whether facts of which at most one holds are one variable.
+    merges: bool,
+}
+
+/// What is being planned for.
+#[derive(Clone, Debug)]
+struct Thinking {
+    agendas: Vec<Agenda>,
+    lists: Vec<u32>,
+    roots: Vec<u32>,
+    stage: Stage,
+    /// The best plan, as far as is known, and what it costs.
+    found: Option<(Vec<u32>, u64)>,
+    /// What had been done before.
+    before: Work,
+    /// Expansions until the best plan was found.
+    expanded_for_best: u64,
+    upset: u64,
+}
+
+#[derive(Clone, Debug)]
+enum Stage {
+    /// What has changed is looked at, and costs are put right.
+    Settle,
+    /// Nodes are expanded.
+    Search(Box<Search>),
+    /// The best plan is known.
+    Others(Box<Alternatives>),
+}
+
+impl GraphPlanner {
+    /// A planner that has nothing to do and knows nothing.
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            settings,
+            next_frame: 0,
+            graphs: Vec::new(),
+            thinking: None,
+            merges: true,
+        }
+    }
+
+    /// Makes the graph for a problem the last one, with the belief of the problem.
+    fn fetch(&mut self, problem: &Problem) {
+        let same = |graph: &Graph| graph.world.is_of(problem);
+        match self.graphs.iter().position(same) {
+            Some(place) => {
+                let graph = self.graphs.remove(place);
+                self.graphs.push(graph);
+            }
+            None => {
+                if self.graphs.len() == GRAPHS {
+                    self.graphs.remove(0);
+                }
+                let groups = match self.merges {
+                    true => world::disjoint(&mutex_groups(&problem.domain, &problem.model)),
+                    false => Vec::new(),
+                };
+                let world = World::new(problem, groups);
+                self.graphs.push(Graph::new(world));
+            }
+        }
+        let Some(graph) = self.graphs.last_mut() else {
+            return;
+        };
+        let mut touched = Touched::default();
+        if !graph.world.knows(&problem.belief) {
+            graph.world.become_like(&problem.belief, &mut touched);
+        }
+        let forbidden = graph.world.forbid(&problem.forbidden);
+        let forbidden = forbidden.into_iter().map(Key::Action);
+        touched.keys.extend(forbidden.map(|key| (key, NONE)));
+        graph.touched(&touched);
+        graph.begin_anew_if_most_is_dirty();
+    }
+
+    fn go_on(&mut self, mut budget: u64) -> Option<Outcome> {
+        let graph = self.graphs.last_mut()?;
+        let thinking = self.thinking.as_mut()?;
+        let depth = self.settings.depth.actions();
+        if thinking.upset != graph.upset {
+            thinking.restart(graph);
+        }
+        loop {
+            if budget == 0 {
+                return None;
+            }
+            match &mut thinking.stage {
+                Stage::Settle => {
+                    if graph.reevaluate_one() {
+                        budget = budget.saturating_sub(VISITS_PER_EXPANSION);
+                    } else if graph.repair_one() {
+                        budget -= 1;
+                    } else if !thinking.decide(graph, &self.settings) {
+                        return Some(thinking.none(graph));
+                    }
+                }
+                Stage::Search(search) => match search.step(graph, depth) {
+                    Step::Visited(expanded) => budget = budget.saturating_sub(price(expanded)),
+                    Step::Found(way, cost) => {
+                        thinking.found = Some((way, cost));
+                        thinking.stage = Stage::Settle;
+                    }
+                    Step::Exhausted => thinking.stage = Stage::Settle,
+                },
+                Stage::Others(others) => match others.step(graph, depth) {
+                    Some(expanded) => budget = budget.saturating_sub(price(expanded)),
+                    None => {
+                        let ways = std::mem::take(&mut others.plans);
+                        return Some(thinking.plans(graph, &ways, &mut self.next_frame));
+                    }
+                },
+            }
+        }
+    }
+}
+
+fn price(expanded: bool) -> u64 {
+    if expanded { VISITS_PER_EXPANSION } else { 1 }
+}
+
+impl Thinking {
+    /// The belief has changed meanwhile: what was found out stays, the search does not.
+    fn restart(&mut self, graph: &mut Graph) {
+        let tasks = self.agendas.iter().map(|agenda| &agenda.tasks);
+        self.lists = tasks.map(|tasks| graph.world.list(tasks)).collect();
+        self.stage = Stage::Settle;
+        self.found = None;
+        self.upset = graph.upset;
+    }
+
+    /// All costs are right. Returns `false` if there is no plan.
+    fn decide(&mut self, graph: &mut Graph, settings: &Settings) -> bool {
+        let depth = settings.depth.actions();
+        // A way that was found begins at one of the roots as they were.
+        if self.found.is_none() {
+            self.roots = self.lists.iter().map(|list| graph.root(*list)).collect();
+        }
+        let cost = |root: &u32| graph.nodes[*root as usize].v;
+        let Some(best) = self.roots.iter().copied().min_by_key(cost) else {
+            return false;
+        };
+        let least = cost(&best);
+        if least == INFINITE {
+            return false;
+        }
+        let found = self.found.take();
+        let found = found.filter(|(_, cost)| depth.is_some() || *cost <= least);
+        let way = found.map(|(way, _)| way);
+        self.stage = match way.or_else(|| walk(graph, best, depth)) {
+            None => Stage::Search(Box::new(Search::new(graph, &self.roots))),
+            Some(way) => {
+                self.expanded_for_best = graph.work.expanded - self.before.expanded;
+                let wanted = settings.alternatives.max(1);
+                Stage::Others(Box::new(Alternatives::new(graph, &self.roots, way, wanted)))
+            }
+        };
+        true
+    }
+
+    fn plans(&self, graph: &Graph, ways: &[Vec<u32>], next_frame: &mut u64) -> Outcome {
+        let mut replay = Replay::default();
+        let begins: Vec<usize> = self
+            .agendas
+            .iter()
+            .map(|a| replay.begin(&a.tasks))
+            .collect();
+        let mut plans = Vec::new();
+        for way in ways {
+            let agenda = self.roots.iter().position(|root| way.first() == Some(root));
+            if let Some(agenda) = agenda {
+                plans.push(replay.plan(graph, begins[agenda], way, next_frame));
+            }
+        }
+        Outcome {
+            plans,
+            wanted: BTreeSet::new(),
+            expanded: graph.work.expanded - self.before.expanded,
+            expanded_for_best: self.expanded_for_best,
+        }
+    }
+
+    /// There is no plan. What was asked for in vain is what the nodes ask for that can be reached:
+    /// all of them were expanded, or there might be a plan.
+    fn none(&self, graph: &Graph) -> Outcome {
+        let mut wanted = BTreeSet::new();
+        let mut open = self.roots.clone();
+        let mut seen: BTreeSet<u32> = open.iter().copied().collect();
+        while let Some(node) = open.pop() {
+            wanted.extend(graph.wanted.get(&node).into_iter().flatten().copied());
+            for edge in &graph.nodes[node as usize].out {
+                if seen.insert(edge.to) {
+                    open.push(edge.to);
+                }
+            }
+        }
+        let expanded = graph.work.expanded - self.before.expanded;
+        Outcome {
+            plans: Vec::new(),
+            wanted: wanted
+                .into_iter()
+                .map(|fact| graph.world.name_atom(fact))
+                .collect::<BTreeSet<Fact>>(),
+            expanded,
+            expanded_for_best: expanded,
+        }
+    }
+}
+
+impl Planner for GraphPlanner {
+    fn begin(&mut self, problem: Problem, agendas: &[Agenda]) {
+        self.fetch(&problem);
+        let Some(graph) = self.graphs.last_mut() else {
+            return;
+        };
+        let mut thinking = Thinking {
+            agendas: agendas.to_vec(),
+            lists: Vec::new(),
+            roots: Vec::new(),
+            stage: Stage::Settle,
+            found: None,
+            before: graph.work,
+            expanded_for_best: 0,
+            upset: graph.upset,
+        };
+        thinking.restart(graph);
+        self.thinking = Some(thinking);
+    }
+
+    fn think(&mut self, expansions: u64) -> Option<Outcome> {
+        let budget = expansions.max(1).saturating_mul(VISITS_PER_EXPANSION);
+        let outcome = self.go_on(budget)?;
+        self.thinking = None;
+        Some(outcome)
+    }
+
+    fn is_thinking(&self) -> bool {
+        self.thinking.is_some()
+    }
+
+    fn stop(&mut self) {
+        self.thinking = None;
+    }
+
+    fn observe(&mut self, changes: &[FactChange]) {
+        for graph in &mut self.graphs {
+            let mut touched = Touched::default();
+            graph.world.apply(changes, &mut touched);
+            graph.touched(&touched);
+        }
+    }
+}
+
+impl World {
+    /// Whether it was made for this domain, execution model and map.
+    fn is_of(&self, problem: &Problem) -> bool {
+        same(&self.domain, &problem.domain)
+            && same(&self.model, &problem.model)
+            && same(&self.map, &problem.map)
+    }
+}
+
+fn same<T: PartialEq>(a: &Arc<T>, b: &Arc<T>) -> bool {
+    Arc::ptr_eq(a, b) || **a == **b
+}

@@ -1,0 +1,410 @@
+//! The graph: what is left to do in which state, what it costs from there, and what that hangs on.
+
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, VecDeque};
+
+use super::decompose::{self, Way};
+use super::intern::{Map, Slices};
+use super::lists::NIL;
+use super::world::{Key, Touched, World};
+
+/// No way.
+pub(super) const INFINITE: u64 = u64::MAX;
+
+/// One way on from a node: a decomposition of its first task, or its first action.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) struct Edge {
+    pub to: u32,
+    /// Of the action; zero for a decomposition.
+    pub cost: u64,
+    /// Where `to` notes that it is led to.
+    back: u32,
+}
+
+impl Edge {
+    /// What it counts in the search. Never nothing, so that no cycle supports itself and every
+    /// search in a finite space ends: of equal plans, the one with the fewest decompositions.
+    pub fn weight(&self) -> u64 {
+        self.cost.max(1)
+    }
+}
+
+/// A node that leads here, and by which of its edges.
+#[derive(Clone, Copy, Debug)]
+struct Back {
+    from: u32,
+    edge: u32,
+}
+
+/// A key that was asked for, and where this is noted with the key.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Dependency {
+    pub key: u32,
+    pub at: u32,
+}
+
+/// A node that has asked for a key, and which of its dependencies this is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Subscription {
+    pub node: u32,
+    pub dependency: u32,
+}
+
+/// A list of tasks in a state: the belief overlaid with a delta. It means the same however it was
+/// reached, so ways that come to the same work in the same state share everything that follows.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub list: u32,
+    pub delta: u32,
+    /// The cost to the end, as it is known to the nodes that lead here …
+    pub v: u64,
+    /// … and as it follows from the nodes that this one leads to, or from an estimate. Both are
+    /// the same unless the node is in the queue.
+    pub rhs: u64,
+    /// The key under which it is in the queue; [`INFINITE`] if it is not.
+    pub queued: u64,
+    pub out: Vec<Edge>,
+    back: Vec<Back>,
+    pub dependencies: Vec<Dependency>,
+    pub expanded: bool,
+    /// Something it has asked for has changed since.
+    pub dirty: bool,
+    /// How many collections have not found it; [`u8::MAX`]: it is a free place.
+    pub age: u8,
+}
+
+impl Node {
+    pub fn is_free(&self) -> bool {
+        self.age == u8::MAX
+    }
+}
+
+/// What was done, in numbers.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Work {
+    pub expanded: u64,
+    pub reevaluated: u64,
+    pub repaired: u64,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Graph {
+    pub world: World,
+    pub nodes: Vec<Node>,
+    pub free: Vec<u32>,
+    pub table: Map<(u32, u32), u32>,
+    pub keys: Map<Key, u32>,
+    pub subscriptions: Vec<Vec<Subscription>>,
+    queue: BinaryHeap<Reverse<(u64, u32)>>,
+    dirty: VecDeque<u32>,
+    /// By node: observable facts that it asked for and that did not hold.
+    pub wanted: Map<u32, Vec<u32>>,
+    /// Sets of variables that occur as those of deltas.
+    pub shapes: Slices,
+    /// By list: the shapes of the deltas that it occurs with.
+    pub shapes_of: Map<u32, Vec<u32>>,
+    pub work: Work,
+    /// Counts what makes a search that is under way worthless.
+    pub upset: u64,
+}
+
+impl Graph {
+    pub fn new(world: World) -> Self {
+        Self {
+            world,
+            nodes: Vec::new(),
+            free: Vec::new(),
+            table: Map::default(),
+            keys: Map::default(),
+            subscriptions: Vec::new(),
+            queue: BinaryHeap::new(),
+            dirty: VecDeque::new(),
+            wanted: Map::default(),
+            shapes: Slices::default(),
+            shapes_of: Map::default(),
+            work: Work::default(),
+            upset: 0,
+        }
+    }
+
+    /// Forgets all nodes.
+    pub fn clear(&mut self) {
+        self.nodes.clear();
+        self.free.clear();
+        self.table.clear();
+        self.keys.clear();
+        self.subscriptions.clear();
+        self.queue.clear();
+        self.dirty.clear();
+        self.wanted.clear();
+        self.shapes = Slices::default();
+        self.shapes_of.clear();
+        self.upset += 1;
+    }
+
+    /// How many nodes there are.
+    pub fn live(&self) -> usize {
+        self.nodes.len() - self.free.len()
+    }
+
+    /// Notes which nodes have asked for something that has changed.
+    pub fn touched(&mut self, touched: &Touched) {
+        if touched.all {
+            self.clear();
+            return;
+        }
+        if !touched.keys.is_empty() {
+            self.upset += 1;
+        }
+        for (key, variable) in &touched.keys {
+            let Some(number) = self.keys.get(key) else {
+                continue;
+            };
+            for subscription in &self.subscriptions[*number as usize] {
+                let node = &mut self.nodes[subscription.node as usize];
+                if !node.dirty && !self.world.shadows(node.delta, *variable) {
+                    node.dirty = true;
+                    self.dirty.push_back(subscription.node);
+                }
+            }
+        }
+    }
+
+    /// If more is to be looked at again than not, it is cheaper to begin anew.
+    pub fn begin_anew_if_most_is_dirty(&mut self) {
+        if self.dirty.len() > 1000 && 2 * self.dirty.len() > self.live() {
+            self.clear();
+        }
+    }
+
+    /// Looks again at one of the nodes for which something has changed. Returns whether there was
+    /// one.
+    pub fn reevaluate_one(&mut self) -> bool {
+        while let Some(node) = self.dirty.pop_front() {
+            let known = &mut self.nodes[node as usize];
+            if known.is_free() || !std::mem::take(&mut known.dirty) {
+                continue;
+            }
+            self.work.reevaluated += 1;
+            match known.expanded {
+                true => self.evaluate(node),
+                false => self.evaluate_leaf(node),
+            }
+            self.touch(node);
+            return true;
+        }
+        false
+    }
+
+    /// The node of a list in a state.
+    pub fn node(&mut self, list: u32, delta: u32) -> u32 {
+        if let Some(node) = self.table.get(&(list, delta)) {
+            return *node;
+        }
+        let fresh = Node {
+            list,
+            delta,
+            v: 0,
+            rhs: 0,
+            queued: INFINITE,
+            out: Vec::new(),
+            back: Vec::new(),
+            dependencies: Vec::new(),
+            expanded: false,
+            dirty: false,
+            age: 0,
+        };
+        let node = match self.free.pop() {
+            Some(place) => {
+                self.nodes[place as usize] = fresh;
+                place
+            }
+            None => {
+                self.nodes.push(fresh);
+                self.nodes.len() as u32 - 1
+            }
+        };
+        self.table.insert((list, delta), node);
+        self.note_shape(list, delta);
+        self.evaluate_leaf(node);
+        let node_now = &mut self.nodes[node as usize];
+        node_now.v = node_now.rhs;
+        node
+    }
+
+    fn note_shape(&mut self, list: u32, delta: u32) {
+        let pairs = self.world.deltas.get(delta).chunks_exact(2);
+        let variables: Vec<u32> = pairs.map(|pair| pair[0]).collect();
+        let shape = self.shapes.intern(&variables);
+        let shapes = self.shapes_of.entry(list).or_default();
+        if !shapes.contains(&shape) {
+            shapes.push(shape);
+        }
+    }
+
+    /// The estimate of a node that was not expanded.
+    fn evaluate_leaf(&mut self, node: u32) {
+        let Node { list, delta, .. } = self.nodes[node as usize];
+        let (estimate, reads) = decompose::estimate(&mut self.world, list, delta);
+        self.depend(node, reads);
+        self.nodes[node as usize].rhs = estimate;
+    }
+
+    /// All ways on from a node, as they are now.
+    pub fn expand(&mut self, node: u32) {
+        self.nodes[node as usize].expanded = true;
+        self.work.expanded += 1;
+        self.evaluate(node);
+        self.touch(node);
+    }
+
+    fn evaluate(&mut self, node: u32) {
+        let Node { list, delta, .. } = self.nodes[node as usize];
+        let found = decompose::ways(&mut self.world, list, delta);
+        self.depend(node, found.reads);
+        if found.wanted.is_empty() {
+            self.wanted.remove(&node);
+        } else {
+            self.wanted.insert(node, found.wanted);
+        }
+        let mut edges: Vec<Edge> = Vec::with_capacity(found.ways.len());
+        for Way { list, delta, cost } in found.ways {
+            let to = self.node(list, delta);
+            match edges.iter_mut().find(|edge| edge.to == to) {
+                Some(known) => known.cost = known.cost.min(cost),
+                None => edges.push(Edge { to, cost, back: 0 }),
+            }
+        }
+        self.connect(node, edges);
+    }
+
+    /// These are the edges of a node from now on.
+    pub fn connect(&mut self, node: u32, edges: Vec<Edge>) {
+        let old = &self.nodes[node as usize].out;
+        let same = |(a, b): (&Edge, &Edge)| a.to == b.to && a.cost == b.cost;
+        if old.len() == edges.len() && old.iter().zip(&edges).all(same) {
+            return;
+        }
+        for edge in 0..old.len() {
+            let Edge { to, back, .. } = self.nodes[node as usize].out[edge];
+            let backs = &mut self.nodes[to as usize].back;
+            backs.swap_remove(back as usize);
+            if let Some(moved) = backs.get(back as usize).copied() {
+                self.nodes[moved.from as usize].out[moved.edge as usize].back = back;
+            }
+        }
+        self.nodes[node as usize].out = edges;
+        for edge in 0..self.nodes[node as usize].out.len() {
+            let to = self.nodes[node as usize].out[edge].to;
+            let backs = &mut self.nodes[to as usize].back;
+            let back = backs.len() as u32;
+            backs.push(Back {
+                from: node,
+                edge: edge as u32,
+            });
+            self.nodes[node as usize].out[edge].back = back;
+        }
+    }
+
+    /// These are the keys that a node has asked for.
+    pub fn depend(&mut self, node: u32, mut reads: Vec<Key>) {
+        reads.sort_unstable();
+        reads.dedup();
+        for dependency in 0..self.nodes[node as usize].dependencies.len() {
+            let Dependency { key, at } = self.nodes[node as usize].dependencies[dependency];
+            let subscriptions = &mut self.subscriptions[key as usize];
+            subscriptions.swap_remove(at as usize);
+            if let Some(moved) = subscriptions.get(at as usize) {
+                let moved_node = &mut self.nodes[moved.node as usize];
+                moved_node.dependencies[moved.dependency as usize].at = at;
+            }
+        }
+        let mut dependencies = Vec::with_capacity(reads.len());
+        for (dependency, key) in reads.into_iter().enumerate() {
+            let fresh = self.subscriptions.len() as u32;
+            let key = *self.keys.entry(key).or_insert(fresh);
+            if key == fresh {
+                self.subscriptions.push(Vec::new());
+            }
+            let subscriptions = &mut self.subscriptions[key as usize];
+            dependencies.push(Dependency {
+                key,
+                at: subscriptions.len() as u32,
+            });
+            subscriptions.push(Subscription {
+                node,
+                dependency: dependency as u32,
+            });
+        }
+        self.nodes[node as usize].dependencies = dependencies;
+    }
+
+    /// Computes a node's cost to the end from those it leads to, and queues it if that is news.
+    pub fn touch(&mut self, node: u32) {
+        let known = &self.nodes[node as usize];
+        if known.expanded && known.list != NIL {
+            let through =
+                |edge: &Edge| edge.weight().saturating_add(self.nodes[edge.to as usize].v);
+            let least = known.out.iter().map(through).min();
+            self.nodes[node as usize].rhs = least.unwrap_or(INFINITE);
+        }
+        let known = &mut self.nodes[node as usize];
+        if known.v == known.rhs {
+            known.queued = INFINITE;
+            return;
+        }
+        let key = known.v.min(known.rhs);
+        if known.queued != key {
+            known.queued = key;
+            self.queue.push(Reverse((key, node)));
+        }
+    }
+
+    /// Carries one change of a cost on to the nodes that lead there (G. Ramalingam and T. Reps,
+    /// *An Incremental Algorithm for a Generalization of the Shortest-Path Problem*, 1996).
+    /// Returns whether there was one.
+    pub fn repair_one(&mut self) -> bool {
+        while let Some(Reverse((key, node))) = self.queue.pop() {
+            let known = &mut self.nodes[node as usize];
+            if known.queued != key || known.is_free() {
+                continue;
+            }
+            self.work.repaired += 1;
+            known.queued = INFINITE;
+            if known.v > known.rhs {
+                known.v = known.rhs;
+            } else {
+                known.v = INFINITE;
+                self.touch(node);
+            }
+            for back in 0..self.nodes[node as usize].back.len() {
+                let from = self.nodes[node as usize].back[back].from;
+                self.touch(from);
+            }
+            return true;
+        }
+        false
+    }
+
+    /// The best node for a list in the belief as it is now: of all whose delta says nothing but
+    /// what is so, the one from which most is known. They all mean the same.
+    pub fn root(&mut self, list: u32) -> u32 {
+        let shapes = self.shapes_of.get(&list);
+        let realised = shapes.into_iter().flatten().filter_map(|shape| {
+            let delta = self.world.realised(self.shapes.get(*shape))?;
+            self.table.get(&(list, delta)).copied()
+        });
+        let best = realised.max_by_key(|node| {
+            let known = &self.nodes[*node as usize];
+            (!known.dirty, known.expanded, known.v, Reverse(*node))
+        });
+        best.unwrap_or_else(|| self.node(list, 0))
+    }
+
+    /// The edge by which the cheapest way goes on, if there is one.
+    pub fn best_edge(&self, node: u32) -> Option<&Edge> {
+        let out = &self.nodes[node as usize].out;
+        let through = |edge: &&Edge| edge.weight().saturating_add(self.nodes[edge.to as usize].v);
+        out.iter().min_by_key(through)
+    }
+}

@@ -1,0 +1,42 @@
+//! The incremental planner against the one that plans from scratch, over histories made at random.
+//!
+//! `REPLANS=n` sets how often is planned (100,000 unless told otherwise), `REPLAN_SEED=s` repeats
+//! the one history that a failure has named.
+
+mod domains;
+mod episode;
+mod random;
+
+use episode::{Episode, Tally};
+
+/// So often is planned in an ordinary run.
+const REPLANS: u64 = 100_000;
+
+fn variable(name: &str) -> Option<u64> {
+    std::env::var(name)
+        .ok()
+        .and_then(|value| value.parse().ok())
+}
+
+#[test]
+#[expect(
+    clippy::print_stderr,
+    reason = "what was tried is worth seeing with --nocapture"
+)]
+fn what_is_kept_is_as_good_as_planning_from_scratch() {
+    if let Some(seed) = variable("REPLAN_SEED") {
+        Episode::new(seed).run(&mut Tally::default());
+        return;
+    }
+    let wanted = variable("REPLANS").unwrap_or(REPLANS);
+    let mut tally = Tally::default();
+    let mut seed = 0;
+    while tally.replans < wanted {
+        Episode::new(seed).run(&mut tally);
+        seed += 1;
+    }
+    eprintln!("{tally:?}");
+    // The histories are worth something only if most goals can be reached and some cannot.
+    assert!(10 * tally.plans > 3 * tally.replans, "{tally:?}");
+    assert!(50 * tally.proved_none > tally.replans, "{tally:?}");
+}
