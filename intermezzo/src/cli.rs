@@ -1,6 +1,7 @@
 //! What can be typed.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use agent_link::options::{DEFAULT_ROBOT, PlannerOptions};
 use clap::{Args, Parser, Subcommand};
@@ -26,6 +27,8 @@ Exit status:
   1  a goal failed or was rejected, a role died, or a file has faults
   2  the command cannot be carried out as it was typed
   3  no robot is running, or none answers
+  4  `plan`: it is proved that there is no plan
+  5  `plan`: no plan was found, and there may be one
 
 Goals and facts are HDDL: (go n4), (and (show n2) (show n12)), (not (open door3_5))."
 )]
@@ -56,6 +59,8 @@ pub(crate) enum Command {
     Status(StatusArgs),
     /// What happens from now on, until Ctrl-C.
     Watch(WatchArgs),
+    /// Find a plan for a problem in HDDL; no robot is needed.
+    Plan(PlanArgs),
     /// Look after maps.
     #[command(subcommand)]
     Map(MapCommand),
@@ -272,6 +277,44 @@ pub(crate) struct WatchArgs {
     pub(crate) target: Target,
 }
 
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  intermezzo plan domain.hddl problem.hddl                   the plan, in the format of the IPC 2020
+  intermezzo plan domain.hddl problem.hddl --explain         what each step is for, as a tree
+  intermezzo plan domain.hddl problem.hddl --optimal --time-limit 60 -o problem.plan
+
+The plan goes to the standard output or to FILE, which is written whole or not at all; how planning
+goes is told on the standard error. Ctrl-C ends it; with --optimal the best plan so far is kept.
+
+Exit status: 0 there is a plan; 4 it is proved that there is none; 5 none was found within the time
+limit or the memory, or before Ctrl-C; 2 the files are not in order, or FILE cannot be written;
+1 writing failed halfway.")]
+pub(crate) struct PlanArgs {
+    /// The domain.
+    #[arg(value_name = "DOMAIN")]
+    pub(crate) domain: PathBuf,
+    /// The problem: objects, tasks, and what holds at first.
+    #[arg(value_name = "PROBLEM")]
+    pub(crate) problem: PathBuf,
+    /// Where to write the plan. Without it the plan is printed.
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Go on until no plan can be cheaper, and say of better plans as they are found.
+    #[arg(long)]
+    pub(crate) optimal: bool,
+    /// Give up after so many seconds. With --optimal the best plan so far counts.
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub(crate) time_limit: Option<Duration>,
+    /// Print one JSON object with verdict, numbers, actions and decompositions instead of the plan.
+    #[arg(long, conflicts_with = "explain")]
+    pub(crate) json: bool,
+    /// Print the plan as a tree: which action serves which task, by which method. Of a large tree
+    /// as many levels as are easily read, or DEPTH.
+    #[arg(long, value_name = "DEPTH", num_args = 0..=1, require_equals = true)]
+    pub(crate) explain: Option<Option<usize>>,
+}
+
 #[derive(Debug, Subcommand)]
 pub(crate) enum MapCommand {
     /// Name everything that is wrong with a map, each with its line.
@@ -316,6 +359,12 @@ pub(crate) enum RoleCommand {
     Executor(executor_sim::program::ControllerArgs),
     /// The world.
     World(executor_sim::program::WorldArgs),
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let number = text.parse::<f64>().ok();
+    let duration = number.and_then(|number| Duration::try_from_secs_f64(number).ok());
+    duration.ok_or_else(|| "expected a number of seconds".to_owned())
 }
 
 fn speed(text: &str) -> Result<f64, String> {

@@ -14,6 +14,10 @@ pub enum Exit {
     BadInput = 2,
     /// No robot, or none that answers.
     NobodyThere = 3,
+    /// It is proved that the problem has no plan.
+    Unsolvable = 4,
+    /// No plan was found, and nobody knows whether there is one.
+    Unknown = 5,
 }
 
 impl From<Exit> for ExitCode {

@@ -17,13 +17,28 @@ pub use exit::{Exit, Failure};
 
 use agent_core::protocol::Command as Wish;
 use cli::{Command, DomainCommand, MapCommand, RoleCommand};
-use command::{check, control, demo, goal, scale, status, up, watch};
+use command::{check, control, demo, goal, plan, scale, status, up, watch};
+
+/// Carries out what was typed, if that needs neither a robot nor anything else that waits. `None`
+/// if it does: then it is for [`run`].
+pub fn run_alone(cli: &Cli) -> Option<Result<Exit, Failure>> {
+    match &cli.command {
+        Command::Plan(args) => Some(plan::run(args)),
+        Command::Map(MapCommand::Check { file }) => Some(check::map(file)),
+        Command::Map(MapCommand::Scale(args)) => Some(scale::run(args)),
+        Command::Domain(DomainCommand::Check { dir }) => Some(check::domain(dir)),
+        _ => None,
+    }
+}
 
 /// Carries out what was typed.
 ///
 /// # Errors
 /// If that is not possible.
 pub async fn run(cli: Cli) -> Result<Exit, Failure> {
+    if let Some(result) = run_alone(&cli) {
+        return result;
+    }
     match cli.command {
         Command::Demo(args) => demo::run(args).await,
         Command::Up(args) => up::run(*args).await,
@@ -35,10 +50,9 @@ pub async fn run(cli: Cli) -> Result<Exit, Failure> {
         Command::Door(args) => control::door(args).await,
         Command::Status(args) => status::run(args).await,
         Command::Watch(args) => watch::run(args).await,
-        Command::Map(MapCommand::Check { file }) => check::map(&file),
-        Command::Map(MapCommand::Scale(args)) => scale::run(&args),
-        Command::Domain(DomainCommand::Check { dir }) => check::domain(&dir),
         Command::Role(role) => run_role(role).await,
+        // All of these went alone.
+        Command::Plan(_) | Command::Map(_) | Command::Domain(_) => Ok(Exit::Done),
     }
 }
 

@@ -4,6 +4,7 @@ pub(crate) mod check;
 pub(crate) mod control;
 pub(crate) mod demo;
 pub(crate) mod goal;
+pub(crate) mod plan;
 pub(crate) mod scale;
 pub(crate) mod status;
 pub(crate) mod up;

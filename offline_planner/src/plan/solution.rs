@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use agent_core::language::Spelling;
 use agent_core::model::{Atom, Cost, Symbol};
 
 use super::Choices;
@@ -100,6 +101,21 @@ impl Solution {
         let last_child = u32::try_from(self.nodes.len()).ok()?;
         open.extend((first_child..last_child).rev().map(NodeId));
         Some(())
+    }
+
+    /// Spells all names as their authors did.
+    pub fn spell(&mut self, spelling: &Spelling) {
+        let compiled = Arc::make_mut(&mut self.compiled);
+        for object in &mut compiled.objects {
+            *object = spelling.object(object).into();
+        }
+        let actions = compiled.actions.iter_mut().map(|action| &mut action.name);
+        for name in actions.chain(compiled.tasks.iter_mut().map(|task| &mut task.name)) {
+            *name = spelling.step(name).into();
+        }
+        for method in &mut compiled.methods {
+            method.name = spelling.method(&method.name).into();
+        }
     }
 
     /// How many actions it has.
