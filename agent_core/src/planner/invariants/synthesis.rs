@@ -130,27 +130,34 @@ impl Synthesis<'_> {
         found
     }
 
-    /// Adds what two groups are together, where that is a group that an action or a suspension never
-    /// empties, though it may empty one of the two: a robot that is on no arc is at a node.
+    /// Adds what two groups are together, where that is a group that no action or suspension ever
+    /// empties, though each of the two is emptied at times: a robot that is on no arc is at a node.
     ///
-    /// Groups that only happen to go together are not joined. The more a group claims, the
+    /// Two that are never empty are two things, and together never one. Groups that only happen to go together are not joined. The more a group claims, the
     /// sooner an observation breaks it.
     fn join(&self, found: &mut BTreeSet<Group>) {
-        let mut open: VecDeque<Group> = found.iter().cloned().collect();
+        let mut open: Vec<Group> = found.iter().cloned().collect();
+        open.retain(|group| !self.is_never_emptied(group));
+        let mut others = open.clone();
         let mut tried = BTreeSet::new();
-        while let Some(group) = open.pop_front() {
-            if found.len() > TO_JOIN {
+        while let Some(group) = open.pop() {
+            if others.len() > TO_JOIN {
                 return;
             }
-            for other in found.clone() {
+            for other in others.clone() {
                 for joined in unions(&group, &other) {
-                    if tried.insert(joined.clone())
-                        && !found.contains(&joined)
-                        && matches!(self.fault(&joined), Fault::None)
-                        && self.is_never_emptied(&joined)
+                    if !tried.insert(joined.clone())
+                        || found.contains(&joined)
+                        || !matches!(self.fault(&joined), Fault::None)
                     {
-                        found.insert(joined.clone());
-                        open.push_back(joined);
+                        continue;
+                    }
+                    if self.is_never_emptied(&joined) {
+                        found.insert(joined);
+                    } else {
+                        // A third may be missing.
+                        others.push(joined.clone());
+                        open.push(joined);
                     }
                 }
             }

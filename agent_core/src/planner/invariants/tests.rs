@@ -297,6 +297,23 @@ fn what_others_change_is_in_no_group() {
     assert_eq!(groups(&domain, &model), [] as [&str; 0]);
 }
 
+#[test]
+fn two_things_that_are_never_gone_are_not_taken_for_one() {
+    let domain = domain(
+        "(:types room thing) (:predicates (in ?r - room) (held ?t - thing) (free))
+         (:action go :parameters (?r ?s - room) :precondition (in ?r)
+           :effect (and (not (in ?r)) (in ?s)))
+         (:action take :parameters (?t - thing) :precondition (free)
+           :effect (and (not (free)) (held ?t)))
+         (:action put :parameters (?t - thing) :precondition (held ?t)
+           :effect (and (not (held ?t)) (free)))",
+    );
+    assert_eq!(
+        groups(&domain, &ExecutionModel::default()),
+        ["{(free), (held *)}", "{(in *)}"]
+    );
+}
+
 fn fact(name: &str, args: &[&str]) -> Fact {
     Atom::new(name, args.iter().copied())
 }
