@@ -30,14 +30,14 @@ pub(super) struct Faults {
 impl Faults {
     /// Notes a fault at a byte of the text.
     pub(super) fn add(&mut self, offset: usize, message: impl Into<String>) {
-        self.faults.push((offset, message.into()));
+        self.faults.push((offset, printable(message.into())));
     }
 
     /// Notes what has a meaning, but is probably not what was meant: a fault only for those who
     /// read strictly.
     pub(super) fn slip(&mut self, offset: usize, message: impl Into<String>) {
         if self.slips.len() < ENOUGH {
-            self.slips.push((offset, message.into()));
+            self.slips.push((offset, printable(message.into())));
         }
     }
 
@@ -85,6 +85,15 @@ impl Faults {
                 }
             })
             .collect()
+    }
+}
+
+/// A message quotes the text, which may have been made to confuse a terminal.
+fn printable(message: String) -> String {
+    if message.contains(char::is_control) {
+        message.replace(char::is_control, "\u{fffd}")
+    } else {
+        message
     }
 }
 

@@ -56,6 +56,16 @@ fn of_a_long_line_what_stands_around_the_place_is_shown() {
 }
 
 #[test]
+fn what_would_confuse_a_terminal_is_not_shown() {
+    let text = SMALL.replace("(at ?b)", "(\u{1b}[31mat ?b\u{7})");
+    let errors = parse_domain(&text).unwrap_err();
+    let shown = report("f", &text, &errors);
+    assert!(shown.contains("\u{fffd}[31mat"), "{shown}");
+    let control = |letter: char| letter.is_control() && letter != '\n';
+    assert!(!shown.contains(control), "{shown:?}");
+}
+
+#[test]
 fn a_place_beyond_the_text_is_no_reason_to_panic() {
     assert_eq!(excerpt("a", 2, 1), None);
     assert_eq!(excerpt("a", 0, 0), None);
