@@ -1,10 +1,9 @@
 //! Additive costs of the relaxed problem, and the relaxed plan that they suggest.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
+use super::queue::Queue;
 use super::relaxed::{Lists, Proposition, Relaxed};
-use crate::ground::model::NONE;
+use crate::ground::Model;
+use crate::ground::model::{NONE, Task};
 
 /// What cannot be reached.
 pub(crate) const NEVER: u32 = u32::MAX;
@@ -12,141 +11,147 @@ pub(crate) const NEVER: u32 = u32::MAX;
 const MUCH: u32 = 1 << 30;
 
 /// Reckons costs; keeps its lists from one state to the next.
+///
+/// The tasks left are gone through in their order. What is below a task takes part only from its
+/// turn on, and it must be possible by then: so a state is seen to be hopeless in which the next
+/// action's precondition is gone and only tasks behind it could restore it.
 pub(crate) struct Additive<'r> {
     relaxed: &'r Relaxed,
+    /// By task, what its methods decompose it into.
+    below: Lists,
+    /// By task, its operators.
+    operators: Lists,
     /// How many propositions each operator needs.
     needs: Vec<u32>,
     /// What each operator counts.
     weight: Vec<u32>,
-    /// Tasks below each task: of a method, its subtasks.
     allowed: Vec<bool>,
-    stack: Vec<u32>,
+    later: Vec<bool>,
+    open: Vec<u32>,
     missing: Vec<u32>,
     /// By operator: what it and all that it needs cost.
-    pub operator_cost: Vec<u32>,
+    operator_cost: Vec<u32>,
     /// By proposition.
-    pub cost: Vec<u32>,
+    cost: Vec<u32>,
+    /// By proposition: no longer to be improved.
+    fixed: Vec<bool>,
+    reached: Vec<Proposition>,
     supporter: Vec<u32>,
-    heap: BinaryHeap<(Reverse<u32>, Proposition)>,
-    marked: Vec<bool>,
-    trail: Vec<u32>,
-}
-
-/// What a state and the tasks left are worth.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(crate) struct Estimate {
-    /// Weights in the relaxed plan.
-    pub plan: u32,
-    /// The sum of what the tasks left cost.
-    pub sum: u32,
+    queue: Queue,
+    in_plan: Vec<bool>,
+    plan: Vec<u32>,
 }
 
 impl<'r> Additive<'r> {
     /// With a weight for actions and one for methods.
-    pub fn new(relaxed: &'r Relaxed, action: u32, method: u32) -> Self {
-        let operators = relaxed.cost.len();
+    pub fn new(model: &Model, relaxed: &'r Relaxed, action: u32, method: u32) -> Self {
+        let count = relaxed.cost.len();
+        let mut serves = Lists::default();
+        for task in &relaxed.serves {
+            serves.push((*task != NONE).then(|| task - relaxed.first_task));
+        }
         Self {
             relaxed,
-            needs: (0..operators)
+            below: below(model),
+            operators: Lists::inverse(model.tasks.len(), &serves),
+            needs: (0..count)
                 .map(|operator| relaxed.pre.get(operator).len() as u32)
                 .collect(),
-            weight: (0..operators)
+            weight: (0..count)
                 .map(|operator| match relaxed.action_of(operator) {
                     Some(own) if own == operator => action,
                     Some(_) => 0,
                     None => method,
                 })
                 .collect(),
-            allowed: vec![false; relaxed.propositions],
-            stack: Vec::new(),
+            allowed: Vec::new(),
+            later: Vec::new(),
+            open: Vec::new(),
             missing: Vec::new(),
             operator_cost: Vec::new(),
             cost: Vec::new(),
-            supporter: Vec::new(),
-            heap: BinaryHeap::new(),
-            marked: vec![false; operators],
-            trail: Vec::new(),
+            fixed: Vec::new(),
+            reached: Vec::new(),
+            supporter: vec![NONE; relaxed.propositions],
+            queue: Queue::new(),
+            in_plan: vec![false; count],
+            plan: Vec::new(),
         }
     }
 
-    /// Reckons for `state` and the tasks left. `None` if they cannot all be done.
-    ///
-    /// `below` has the tasks into which each task can be decomposed: only what is below the tasks
-    /// left takes part.
-    pub fn evaluate(&mut self, state: &[u64], tasks: &[u32], below: &Lists) -> Option<Estimate> {
+    /// Reckons for `state` and the tasks left: how much there is in the relaxed plan. `None` if
+    /// the tasks cannot all be done.
+    pub fn evaluate(&mut self, state: &[u64], tasks: &[u32]) -> Option<u32> {
         let relaxed = self.relaxed;
-        self.allow(tasks, below);
         self.missing.clone_from(&self.needs);
         self.operator_cost.clone_from(&self.weight);
         self.cost.clear();
         self.cost.resize(relaxed.propositions, NEVER);
-        self.supporter.clear();
-        self.supporter.resize(relaxed.propositions, NONE);
-        self.heap.clear();
-        for operator in 0..self.needs.len() {
-            if self.needs[operator] == 0 && self.is_allowed(operator) {
-                self.fire(operator);
-            }
-        }
-        let mut literals = std::mem::take(&mut self.stack);
+        self.fixed.clear();
+        self.fixed.resize(relaxed.propositions, false);
+        self.allowed.clear();
+        self.allowed.resize(self.below.len(), false);
+        self.queue.clear();
+        self.reached.clear();
+        let mut literals = std::mem::take(&mut self.open);
         literals.clear();
         relaxed.literals(state, |literal| literals.push(literal));
         for literal in &literals {
             self.cost[*literal as usize] = 0;
+            self.fixed[*literal as usize] = true;
+            self.supporter[*literal as usize] = NONE;
             self.settle(*literal, 0);
         }
-        self.stack = literals;
-        while let Some((Reverse(cost), proposition)) = self.heap.pop() {
-            if self.cost[proposition as usize] == cost {
-                self.settle(proposition, cost);
-            }
-        }
-        let mut sum = 0_u32;
+        self.open = literals;
         for task in tasks {
-            let cost = self.cost[(relaxed.first_task + task) as usize];
-            if cost == NEVER {
+            self.allow(*task);
+            while let Some((cost, proposition)) = self.queue.pop() {
+                if self.cost[proposition as usize] == cost && !self.fixed[proposition as usize] {
+                    self.fixed[proposition as usize] = true;
+                    self.settle(proposition, cost);
+                }
+            }
+            if self.cost[(relaxed.first_task + task) as usize] == NEVER {
                 return None;
             }
-            sum = sum.saturating_add(cost).min(MUCH);
         }
-        Some(Estimate {
-            plan: self.relaxed_plan(tasks),
-            sum,
-        })
+        Some(self.relaxed_plan(tasks))
     }
 
-    fn allow(&mut self, tasks: &[u32], below: &Lists) {
-        self.allowed.fill(false);
-        let first = self.relaxed.first_task;
-        let mut open = std::mem::take(&mut self.stack);
-        open.clear();
-        for task in tasks {
-            if !std::mem::replace(&mut self.allowed[(first + task) as usize], true) {
-                open.push(*task);
-            }
+    /// Lets everything below `task` take part.
+    fn allow(&mut self, task: u32) {
+        if std::mem::replace(&mut self.allowed[task as usize], true) {
+            return;
         }
+        let mut open = std::mem::take(&mut self.open);
+        open.clear();
+        open.push(task);
         while let Some(task) = open.pop() {
-            for sub in below.get(task as usize) {
-                if !std::mem::replace(&mut self.allowed[(first + sub) as usize], true) {
+            for place in 0..self.operators.get(task as usize).len() {
+                let operator = self.operators.get(task as usize)[place] as usize;
+                if self.missing[operator] == 0 {
+                    self.fire(operator);
+                }
+            }
+            for sub in self.below.get(task as usize) {
+                if !std::mem::replace(&mut self.allowed[*sub as usize], true) {
                     open.push(*sub);
                 }
             }
         }
-        self.stack = open;
+        self.open = open;
     }
 
-    /// Whether the task that the operator is or serves may come up.
     fn is_allowed(&self, operator: usize) -> bool {
         let serves = self.relaxed.serves[operator];
-        serves == NONE || self.allowed[serves as usize]
+        serves == NONE || self.allowed[(serves - self.relaxed.first_task) as usize]
     }
 
     fn settle(&mut self, proposition: Proposition, cost: u32) {
         let relaxed = self.relaxed;
         for operator in relaxed.needed_by.get(proposition as usize) {
             let operator = *operator as usize;
-            self.operator_cost[operator] =
-                self.operator_cost[operator].saturating_add(cost).min(MUCH);
+            self.operator_cost[operator] = (self.operator_cost[operator] + cost).min(MUCH);
             self.missing[operator] -= 1;
             if self.missing[operator] == 0 && self.is_allowed(operator) {
                 self.fire(operator);
@@ -158,43 +163,108 @@ impl<'r> Additive<'r> {
         let relaxed = self.relaxed;
         let cost = self.operator_cost[operator];
         for effect in relaxed.add.get(operator) {
-            if cost < self.cost[*effect as usize] {
-                self.cost[*effect as usize] = cost;
-                self.supporter[*effect as usize] = operator as u32;
-                self.heap.push((Reverse(cost), *effect));
+            let place = *effect as usize;
+            if cost < self.cost[place] && !self.fixed[place] {
+                self.cost[place] = cost;
+                self.supporter[place] = operator as u32;
+                self.queue.push(cost, *effect);
             }
         }
     }
 
     fn relaxed_plan(&mut self, tasks: &[u32]) -> u32 {
         let relaxed = self.relaxed;
-        let mut open = std::mem::take(&mut self.stack);
+        for operator in self.plan.drain(..) {
+            self.in_plan[operator as usize] = false;
+        }
+        let mut open = std::mem::take(&mut self.open);
         open.clear();
         open.extend(tasks.iter().map(|task| relaxed.first_task + task));
         let mut plan = 0;
         while let Some(proposition) = open.pop() {
             let operator = self.supporter[proposition as usize];
-            if operator == NONE || std::mem::replace(&mut self.marked[operator as usize], true) {
+            if operator == NONE || std::mem::replace(&mut self.in_plan[operator as usize], true) {
                 continue;
             }
-            self.trail.push(operator);
+            self.plan.push(operator);
             plan += self.weight[operator as usize];
             open.extend_from_slice(relaxed.pre.get(operator as usize));
         }
-        for operator in self.trail.drain(..) {
-            self.marked[operator as usize] = false;
-        }
-        self.stack = open;
+        self.open = open;
         plan
     }
 
     /// What doing a task by this method costs; [`NEVER`] if it cannot be.
-    pub fn method_cost(&self, method: usize) -> u32 {
-        let operator = self.relaxed.first_method + method;
+    pub fn method_cost(&self, method: u32) -> u32 {
+        let operator = self.relaxed.first_method + method as usize;
         if self.missing[operator] == 0 {
             self.operator_cost[operator]
         } else {
             NEVER
         }
     }
+
+    /// Whether the relaxed plan has the method, or an action that is one of its subtasks.
+    pub fn helps(&self, model: &Model, method: u32) -> bool {
+        self.in_plan[self.relaxed.first_method + method as usize]
+            || model
+                .get(model.methods[method as usize].subs)
+                .iter()
+                .any(|sub| match model.tasks[*sub as usize] {
+                    Task::Action(action) => self.in_plan[action as usize],
+                    Task::Methods(..) => false,
+                })
+    }
+
+    /// Those actions of the relaxed plan that cannot come up below `rest`, the tasks behind the
+    /// first: whoever decomposes the first task must not lose them.
+    pub fn only_now(&mut self, rest: &[u32], into: &mut Vec<u32>) {
+        into.clear();
+        let mut open = std::mem::take(&mut self.open);
+        open.clear();
+        self.later.clear();
+        self.later.resize(self.below.len(), false);
+        for task in rest {
+            if !std::mem::replace(&mut self.later[*task as usize], true) {
+                open.push(*task);
+            }
+        }
+        while let Some(task) = open.pop() {
+            for sub in self.below.get(task as usize) {
+                if !std::mem::replace(&mut self.later[*sub as usize], true) {
+                    open.push(*sub);
+                }
+            }
+        }
+        self.open = open;
+        let relaxed = self.relaxed;
+        for operator in &self.plan {
+            let serves = relaxed.serves[*operator as usize];
+            let action = (*operator as usize) < relaxed.first_method && serves != NONE;
+            if action && !self.later[(serves - relaxed.first_task) as usize] {
+                into.push(*operator);
+            }
+        }
+    }
+
+    /// Takes an action out of the relaxed plan, as it was executed.
+    pub fn executed(&mut self, action: u32) {
+        self.in_plan[action as usize] = false;
+    }
+}
+
+/// Tasks below each task.
+fn below(model: &Model) -> Lists {
+    let mut lists = Lists::default();
+    for task in 0..model.tasks.len() {
+        let mut subs: Vec<u32> = model
+            .methods_of(task as u32)
+            .flat_map(|method| model.get(model.methods[method].subs))
+            .copied()
+            .collect();
+        subs.sort_unstable();
+        subs.dedup();
+        lists.push(subs);
+    }
+    lists
 }

@@ -1,4 +1,6 @@
 //! How far it is from a state and a list of tasks to the end, as a guess or as a bound.
 
 pub(crate) mod additive;
+pub(crate) mod closure;
+mod queue;
 pub(crate) mod relaxed;

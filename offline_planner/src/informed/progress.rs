@@ -11,7 +11,7 @@ pub(super) struct Place {
     pub stack: u32,
     /// The last method used, in [`Trace`].
     pub trace: u32,
-    /// What the actions have cost, and how many they are.
+    /// What the actions have cost.
     pub cost: u64,
     /// How many actions were executed.
     pub length: u32,
@@ -61,43 +61,81 @@ pub(super) enum Ended {
 /// At most this many methods are used without a look at whether the search has been here before.
 const FORCED: usize = 256;
 
-/// Executes actions and uses methods that are the only ones, until there is a choice.
-///
-/// `state` is changed in place; `methods` is filled with those to choose from.
-pub(super) fn go_on(
-    model: &Model,
-    stacks: &mut Stacks,
-    trace: &mut Trace,
-    place: &mut Place,
-    state: &mut Vec<u64>,
-    spare: &mut Vec<u64>,
-    methods: &mut Vec<u32>,
-) -> Ended {
-    for _ in 0..FORCED {
-        loop {
-            let Some((task, below)) = stacks.pop(place.stack) else {
-                return Ended::Done;
-            };
-            let Task::Action(action) = model.tasks[task as usize] else {
-                break;
-            };
-            let action = &model.actions[action as usize];
-            if !model.possible(state, action.pre, action.check) {
-                return Ended::Dead;
-            }
-            spare.resize(state.len(), 0);
-            model.apply(action, state, spare);
-            std::mem::swap(state, spare);
-            place.stack = below;
-            place.cost = place.cost.saturating_add(action.cost);
-            place.length += u32::from(action.origin != NONE);
+/// Walks through the problem, one place at a time.
+pub(super) struct Walker<'m> {
+    model: &'m Model,
+    /// All stacks met.
+    pub stacks: Stacks,
+    /// All methods used.
+    pub trace: Trace,
+    /// Where it is.
+    pub place: Place,
+    /// What holds there.
+    pub state: Vec<u64>,
+    /// The methods to choose from there.
+    pub methods: Vec<u32>,
+    /// Actions executed since this was last emptied.
+    pub executed: Vec<u32>,
+    spare: Vec<u64>,
+}
+
+impl<'m> Walker<'m> {
+    /// At the beginning.
+    pub fn new(model: &'m Model) -> Self {
+        let mut stacks = Stacks::new();
+        let stack = stacks.push(model.top, EMPTY);
+        Self {
+            model,
+            stacks,
+            trace: Trace::default(),
+            place: Place {
+                stack,
+                trace: NONE,
+                cost: 0,
+                length: 0,
+            },
+            state: model.init.clone(),
+            methods: Vec::new(),
+            executed: Vec::new(),
+            spare: vec![0; model.init.len()],
         }
-        debug_assert_ne!(place.stack, EMPTY);
-        let Some((task, _)) = stacks.pop(place.stack) else {
-            return Ended::Done;
-        };
-        methods.clear();
-        methods.extend(
+    }
+
+    /// Goes elsewhere.
+    pub fn jump(&mut self, place: Place, state: &[u64]) {
+        self.place = place;
+        self.state.copy_from_slice(state);
+    }
+
+    /// Executes actions and uses methods that are the only ones, until there is a choice.
+    pub fn go_on(&mut self) -> Ended {
+        for _ in 0..FORCED {
+            loop {
+                let Some((task, below)) = self.stacks.pop(self.place.stack) else {
+                    return Ended::Done;
+                };
+                let Task::Action(number) = self.model.tasks[task as usize] else {
+                    self.list_methods(task);
+                    break;
+                };
+                if !self.execute(number) {
+                    return Ended::Dead;
+                }
+                self.place.stack = below;
+            }
+            match self.methods[..] {
+                [] => return Ended::Dead,
+                [method] => self.use_method(method),
+                _ => return Ended::Choice,
+            }
+        }
+        Ended::Choice
+    }
+
+    fn list_methods(&mut self, task: u32) {
+        let (model, state) = (self.model, &self.state);
+        self.methods.clear();
+        self.methods.extend(
             model
                 .methods_of(task)
                 .filter(|method| {
@@ -106,29 +144,36 @@ pub(super) fn go_on(
                 })
                 .map(|method| method as u32),
         );
-        match methods[..] {
-            [] => return Ended::Dead,
-            [method] => use_method(model, stacks, trace, place, method),
-            _ => return Ended::Choice,
-        }
     }
-    Ended::Choice
-}
 
-/// Puts the subtasks of `method` in the place of the first task.
-pub(super) fn use_method(
-    model: &Model,
-    stacks: &mut Stacks,
-    trace: &mut Trace,
-    place: &mut Place,
-    method: u32,
-) {
-    let Some((_, mut stack)) = stacks.pop(place.stack) else {
-        return;
-    };
-    for sub in model.get(model.methods[method as usize].subs).iter().rev() {
-        stack = stacks.push(*sub, stack);
+    fn execute(&mut self, number: u32) -> bool {
+        let action = &self.model.actions[number as usize];
+        if !self.model.possible(&self.state, action.pre, action.check) {
+            return false;
+        }
+        self.model.apply(action, &self.state, &mut self.spare);
+        std::mem::swap(&mut self.state, &mut self.spare);
+        self.place.cost = self.place.cost.saturating_add(action.cost);
+        self.place.length += u32::from(action.origin != NONE);
+        self.executed.push(number);
+        true
     }
-    place.stack = stack;
-    place.trace = trace.push(place.trace, method);
+
+    /// Puts the subtasks of `method` in the place of the first task.
+    pub fn use_method(&mut self, method: u32) {
+        let Some((_, mut stack)) = self.stacks.pop(self.place.stack) else {
+            return;
+        };
+        let subs = self.model.methods[method as usize].subs;
+        for sub in self.model.get(subs).iter().rev() {
+            stack = self.stacks.push(*sub, stack);
+        }
+        self.place.stack = stack;
+        self.place.trace = self.trace.push(self.place.trace, method);
+    }
+
+    /// About how much memory this takes.
+    pub fn bytes(&self) -> usize {
+        self.stacks.bytes() + self.trace.bytes()
+    }
 }
