@@ -54,12 +54,6 @@ impl Numbers {
         self.slots[self.place(number.max(1))] != 0
     }
 
-    /// Forgets all.
-    pub fn clear(&mut self) {
-        self.slots.fill(0);
-        self.used = 0;
-    }
-
     /// How much memory it takes.
     pub fn bytes(&self) -> usize {
         self.slots.len() * size_of::<u64>()

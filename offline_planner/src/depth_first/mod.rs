@@ -11,6 +11,8 @@ mod query;
 mod restarts;
 mod search;
 mod table;
+#[cfg(test)]
+mod tests;
 
 pub use restarts::Restarts;
 pub use search::DepthFirst;

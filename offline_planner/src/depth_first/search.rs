@@ -158,10 +158,21 @@ impl DepthFirst {
         search
     }
 
-    /// The whole problem is to be done.
+    /// The whole problem is to be done, and nothing has been tried.
     fn begin(&mut self) {
+        self.facts.undo_to(0);
         self.nodes.clear();
         self.args.clear();
+        self.forks.clear();
+        self.cursors.clear();
+        self.chosen.clear();
+        self.bindings.clear();
+        self.open.clear();
+        self.opened.clear();
+        self.met = Numbers::default();
+        self.begun = Numbers::default();
+        self.done = Numbers::default();
+        self.left_out = false;
         let top = NodeKind::Task(self.compiled.top);
         self.current = self.push_node(top, 0, END);
     }
@@ -195,31 +206,22 @@ impl DepthFirst {
                         return Outcome::Unsolvable;
                     }
                     // Once more, with more of what was left out.
-                    self.nesting = self.nesting * 2 + 1;
-                    self.left_out = false;
-                    self.met.clear();
-                    self.begun.clear();
-                    self.done.clear();
+                    self.nesting += 1;
                     self.begin();
                 }
             }
         }
     }
 
+    /// Gives up after so many dead ends.
+    #[cfg(test)]
+    pub fn be_patient(&mut self, dead_ends: u64) {
+        self.patience = dead_ends;
+    }
+
     /// Begins anew, with chance in the order of choices, and for so many dead ends; then
     /// [`DepthFirst::run`] ends with [`Halt::Incomplete`].
     pub fn restart(&mut self, seed: u64, patience: u64) {
-        self.facts.undo_to(0);
-        self.forks.clear();
-        self.cursors.clear();
-        self.chosen.clear();
-        self.bindings.clear();
-        self.open.clear();
-        self.opened.clear();
-        self.met = Numbers::default();
-        self.begun = Numbers::default();
-        self.done = Numbers::default();
-        self.left_out = false;
         self.nesting = 0;
         self.dead_ends = 0;
         self.patience = patience;
