@@ -102,7 +102,8 @@ fn what_is_missing_is_named_too() {
 #[test]
 fn a_plan_breaks_if_what_it_hangs_on_changes_and_by_nothing_else() {
     let config = Config {
-        cases: 1_500,
+        // More of them with PROPTEST_CASES.
+        cases: Config::default().cases.max(1_500),
         failure_persistence: None,
         ..Config::default()
     };

@@ -65,7 +65,8 @@ fn happenings(problem: &Problem) -> Vec<(String, Vec<FactChange>)> {
 #[test]
 fn no_action_and_no_suspension_breaks_a_group() {
     let config = Config {
-        cases: 1_500,
+        // More of them with PROPTEST_CASES.
+        cases: Config::default().cases.max(1_500),
         failure_persistence: None,
         ..Config::default()
     };
