@@ -1,7 +1,7 @@
 //! Random small problems: what the planner says is held against the judge of plans, and against
 //! plans that are found by trying all sequences of actions, shortest first.
-
 #![allow(clippy::panic, reason = "a test that cannot go on has failed")]
+
 use std::fmt::Write;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;

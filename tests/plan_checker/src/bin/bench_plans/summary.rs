@@ -109,7 +109,7 @@ pub fn summary(rows: &[Row<'_>], peers: &Peers, reference: &str, limits: &Limits
     let _ = writeln!(
         text,
         "speed-up over {reference} where it needs more than {WORTH_COMPARING_S} s of CPU, geometric \
-         mean of {}: {by_cpu:.1} by CPU, {by_wall:.1} by wall clock ({} not solved, counted as {} s)",
+         mean of {}: {by_cpu} by CPU, {by_wall} by wall clock ({} not solved, counted as {} s)",
         hard.len(),
         missed.count(),
         limits.seconds
@@ -119,7 +119,7 @@ pub fn summary(rows: &[Row<'_>], peers: &Peers, reference: &str, limits: &Limits
         .collect();
     let _ = writeln!(
         text,
-        "length against the shorter of the peers' plans, geometric mean of {}: {:.2}",
+        "length against the shorter of the peers' plans, geometric mean of {}: {}",
         ratios.len(),
         mean(ratios.iter().copied())
     );
@@ -155,7 +155,12 @@ fn length_ratio((ours, theirs): (usize, usize)) -> f64 {
     ours.max(1) as f64 / theirs.max(1) as f64
 }
 
-fn mean(ratios: impl Iterator<Item = f64>) -> f64 {
+/// The geometric mean; of nothing it is nothing.
+fn mean(ratios: impl Iterator<Item = f64>) -> String {
     let logarithms: Vec<f64> = ratios.map(f64::ln).collect();
-    (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp()
+    if logarithms.is_empty() {
+        return "-".to_owned();
+    }
+    let mean = (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp();
+    format!("{mean:.2}")
 }
