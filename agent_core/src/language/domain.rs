@@ -121,6 +121,7 @@ impl Reader {
             self.domain.operators.insert(head.name, operator);
         }
         of(":method").for_each(|(at, items)| self.method(at, items));
+        types::forget_unused_unions(&mut self.domain);
         self.undone_tasks();
     }
 

@@ -69,7 +69,7 @@ pub enum Misfit {
         wanted: Symbol,
     },
     /// A name that is neither a variable nor a constant of the domain.
-    #[error("`{name}` is not a constant of the domain{hint}")]
+    #[error("`{name}` is not declared among the constants or objects{hint}")]
     NoConstant {
         /// As written.
         name: Symbol,
@@ -208,7 +208,11 @@ pub(super) fn no_constant(domain: &Domain, name: &Symbol, parameters: &[Paramete
         format!("; did you mean `{as_variable}`?")
     } else {
         let constants = domain.constants.keys().map(Symbol::as_str);
-        hint(name.as_str(), constants, "; a variable begins with `?`")
+        let otherwise = match parameters {
+            [] => "",
+            _ => "; a variable begins with `?`",
+        };
+        hint(name.as_str(), constants, otherwise)
     };
     let name = name.clone();
     Misfit::NoConstant { name, hint }

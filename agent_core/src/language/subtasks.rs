@@ -55,10 +55,14 @@ pub(super) fn subtasks(
         .collect()
 }
 
-fn partially_ordered(at: usize, faults: &mut Faults) {
+fn partially_ordered(at: usize, one: &Subtask<'_>, other: &Subtask<'_>, faults: &mut Faults) {
+    let (one, other) = (one.step, other.step);
     faults.add(
         at,
-        "partially ordered subtasks are not supported; write :ordered-subtasks",
+        format!(
+            "partially ordered subtasks are not supported; write :ordered-subtasks, or say with \
+             :ordering which comes first, `{one}` or `{other}`"
+        ),
     );
 }
 
@@ -131,8 +135,9 @@ fn sorted<'t>(
         .collect();
     let mut order = Vec::new();
     while let Some(step) = next.pop() {
-        if !next.is_empty() {
-            partially_ordered(ordering.map_or(at, |(at, _)| at), faults);
+        if let Some(other) = next.first() {
+            let at = ordering.map_or(at, |(at, _)| at);
+            partially_ordered(at, &subtasks[*other], &subtasks[step], faults);
             return subtasks;
         }
         order.push(step);

@@ -6,7 +6,7 @@ use super::error::Faults;
 use super::near::hint;
 use super::tree::Tree;
 use super::typed_list::{Kinds, either, name, typed_list};
-use crate::model::{Domain, Symbol};
+use crate::model::{Domain, Parameter, Symbol};
 
 /// More types above one another than anyone declares; whoever asks whether an object is of a type
 /// climbs them all.
@@ -103,4 +103,43 @@ pub(super) fn unions(tree: &Tree, domain: &mut Domain) {
     for item in tree.list().unwrap_or_default() {
         unions(item, domain);
     }
+}
+
+/// Forgets unions that nothing is of: they stood where they mean nothing, or in a condition that
+/// is always true.
+pub(super) fn forget_unused_unions(domain: &mut Domain) {
+    if domain.unions.is_empty() {
+        return;
+    }
+    let mut used = BTreeSet::new();
+    let mut note = |parameter: &Parameter| {
+        used.insert(parameter.kind.clone());
+    };
+    let lists = [&domain.predicates, &domain.functions, &domain.tasks];
+    let declared = lists.into_iter().flat_map(BTreeMap::values).flatten();
+    let own = domain
+        .operators
+        .values()
+        .map(|operator| &operator.parameters);
+    let own = own.chain(domain.methods.iter().map(|method| &method.parameters));
+    let effects = domain.operators.values().map(|operator| &operator.effect);
+    let changes = effects.flat_map(|effect| effect.remove.iter().chain(&effect.add));
+    let over = changes.clone().flat_map(|change| &change.over);
+    declared
+        .chain(own.flatten())
+        .chain(over)
+        .for_each(&mut note);
+    let conditions = domain
+        .operators
+        .values()
+        .map(|operator| &operator.precondition);
+    let conditions = conditions.chain(domain.methods.iter().map(|method| &method.precondition));
+    for clause in conditions
+        .chain(changes.map(|change| &change.when))
+        .flatten()
+    {
+        clause.each_quantified(&mut note);
+    }
+    used.extend(domain.constants.values().cloned());
+    domain.unions.retain(|union, _| used.contains(union));
 }

@@ -151,25 +151,11 @@ pub(crate) fn instance(domain: &Domain, choices: &mut Choices<'_>) -> Instance {
 fn without_unions(condition: Condition) -> Condition {
     let mut plain = true;
     for clause in &condition {
-        each_variable(clause, &mut |variable| {
+        clause.each_quantified(&mut |variable| {
             plain &= !variable.kind.as_str().starts_with('(');
         });
     }
     if plain { condition } else { Condition::new() }
-}
-
-fn each_variable(clause: &Clause, found: &mut dyn FnMut(&Parameter)) {
-    match clause {
-        Clause::Fact(..) | Clause::Equal(..) => {}
-        Clause::Any(choices) => choices
-            .iter()
-            .flatten()
-            .for_each(|inner| each_variable(inner, found)),
-        Clause::Every(variables, inner) | Clause::Exists(variables, inner) => {
-            variables.iter().for_each(&mut *found);
-            inner.iter().for_each(|inner| each_variable(inner, found));
-        }
-    }
 }
 
 /// Keeps the unions that occur, since the reader knows of no others.
@@ -189,19 +175,19 @@ fn note_unions(domain: &mut Domain) {
             change
                 .when
                 .iter()
-                .for_each(|clause| each_variable(clause, &mut note));
+                .for_each(|clause| clause.each_quantified(&mut note));
         }
         operator
             .precondition
             .iter()
-            .for_each(|clause| each_variable(clause, &mut note));
+            .for_each(|clause| clause.each_quantified(&mut note));
     }
     for method in &domain.methods {
         method.parameters.iter().for_each(&mut note);
         method
             .precondition
             .iter()
-            .for_each(|clause| each_variable(clause, &mut note));
+            .for_each(|clause| clause.each_quantified(&mut note));
     }
     domain.unions = found
         .into_iter()

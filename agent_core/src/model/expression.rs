@@ -90,6 +90,24 @@ impl Clause {
             }
         }
     }
+
+    /// Calls `found` with every variable that a quantifier in it introduces.
+    pub fn each_quantified(&self, found: &mut dyn FnMut(&Parameter)) {
+        match self {
+            Self::Fact(..) | Self::Equal(..) => {}
+            Self::Any(choices) => {
+                for clause in choices.iter().flatten() {
+                    clause.each_quantified(found);
+                }
+            }
+            Self::Every(variables, inner) | Self::Exists(variables, inner) => {
+                variables.iter().for_each(&mut *found);
+                for clause in inner {
+                    clause.each_quantified(found);
+                }
+            }
+        }
+    }
 }
 
 /// All of these hold. Empty: always true.

@@ -147,6 +147,18 @@ fn quantified_variables_of_an_effect_never_share_a_name() {
 }
 
 #[test]
+fn a_union_that_nothing_is_of_is_none_of_the_domain() {
+    for somewhere in [
+        "(or () (exists (?x - (either room door)) (at ?x)))",
+        "(forall (?x - (either room door)) ())",
+    ] {
+        let text = SMALL.replace("(not (= ?a ?r))", somewhere);
+        let domain = parse_domain(&text).unwrap_or_else(|errors| panic!("{errors:#?}"));
+        assert!(domain.unions.is_empty(), "{somewhere}");
+    }
+}
+
+#[test]
 fn a_type_may_be_either_of_several() {
     let domain = SMALL.replace("(?r - room) :task", "(?r - (either room door)) :task");
     let domain = parse_domain(&domain).unwrap();

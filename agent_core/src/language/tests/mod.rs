@@ -310,7 +310,8 @@ fn subtasks_without_an_order_are_refused() {
         ":subtasks (and (t1 (pass ?a ?b ?d)) (t2 (go ?r)) (t3 (go ?r)))
          :ordering (and (< t1 t2) (< t1 t3))",
     );
-    one_fault(&loose, "12:10", &["partially ordered"]);
+    let which = "which comes first, `(go ?r)` or `(go ?r)`";
+    one_fault(&loose, "12:10", &["partially ordered", which]);
 }
 
 #[test]

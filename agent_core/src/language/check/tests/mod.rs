@@ -304,7 +304,7 @@ fn a_resuming_action_must_be_a_declared_action_that_fits() {
     );
     resume(
         "(resume-move ?x ?y hom)",
-        "`hom` is not a constant of the domain",
+        "`hom` is not declared among the constants",
     );
 }
 
