@@ -36,6 +36,7 @@ pub use what_if::{Considered, WhatIf, consider};
 use std::collections::BTreeSet;
 
 use crate::model::{Fact, FactChange};
+use crate::protocol::GoalId;
 
 /// How far a plan is decomposed before it may be followed.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -90,6 +91,9 @@ pub struct Outcome {
     pub expanded: u64,
     /// How many of them to find the best plan; the others were for alternatives to it.
     pub expanded_for_best: u64,
+    /// Whether no plan is cheaper than the first, or there is none. If not, the planner has acted
+    /// before it knew: planning again goes on from what it knows by now.
+    pub proved: bool,
 }
 
 /// Something that finds plans, in slices, so that planning never blocks listening (decision 9).
@@ -114,4 +118,11 @@ pub trait Planner {
     /// out by comparing, which takes as long as the belief is large. Planning that is under way
     /// goes on from the new belief, or begins anew.
     fn observe(&mut self, _changes: &[FactChange]) {}
+
+    /// A goal is set aside and will be planned for again, by these agendas: what is known of it is
+    /// worth keeping. Whoever does not say so may lose it after a while, and nothing else.
+    fn keep(&mut self, _goal: &GoalId, _agendas: &[Agenda]) {}
+
+    /// A goal that was set aside is taken up or given up.
+    fn release(&mut self, _goal: &GoalId) {}
 }

@@ -173,6 +173,7 @@ impl Search {
                 true => self.expansions_of_best,
                 false => self.expansions,
             },
+            proved: true,
         })
     }
 

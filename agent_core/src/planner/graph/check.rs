@@ -4,6 +4,8 @@ use super::GraphPlanner;
 use super::decompose;
 use super::lists::NIL;
 use super::nodes::{Dependency, Graph, INFINITE};
+use crate::model::FactChange;
+use crate::planner::{Agenda, TaskList};
 
 impl GraphPlanner {
     /// Whether the graph that was used last is sound; else what is not. Finishes what is to be
@@ -25,6 +27,105 @@ impl GraphPlanner {
             }
         }
         Ok(())
+    }
+}
+
+/// What a node is, and what it costs from there.
+pub(super) type Costs = Vec<((u32, u32), u64)>;
+
+impl GraphPlanner {
+    /// Puts everything right, and says what each node costs.
+    pub(super) fn costs(&mut self) -> Costs {
+        let Some(graph) = self.graphs.last_mut() else {
+            return Costs::new();
+        };
+        graph.settle();
+        let known = graph.nodes.iter().filter(|node| !node.is_free());
+        known
+            .map(|node| ((node.list, node.delta), node.v))
+            .collect()
+    }
+
+    /// Gives up what these agendas do not lead to, in all graphs.
+    pub(super) fn forget(&mut self, agendas: &[Agenda]) {
+        for graph in &mut self.graphs {
+            graph.forget_all_but(agendas, &self.kept);
+        }
+    }
+
+    /// Puts everything right.
+    pub(super) fn settle(&mut self) {
+        if let Some(graph) = self.graphs.last_mut() {
+            graph.settle();
+        }
+    }
+
+    /// I11: as many nodes are looked at again as have asked for one of these facts and whose deltas
+    /// say nothing of it. Nothing must be left to be looked at before.
+    pub(super) fn check_reach(&mut self, changes: &[FactChange]) -> Result<(), String> {
+        let Some(graph) = self.graphs.last_mut() else {
+            return Ok(());
+        };
+        let mut touched = super::world::Touched::default();
+        graph.world.apply(changes, &mut touched);
+        if touched.all {
+            graph.touched(&touched);
+            return Ok(());
+        }
+        let mut concerned = std::collections::BTreeSet::new();
+        for (number, node) in graph.nodes.iter().enumerate().filter(|(_, n)| !n.is_free()) {
+            for (key, variable) in &touched.keys {
+                let key = graph.keys.get(key).copied();
+                let asked = node.dependencies.iter().any(|d| Some(d.key) == key);
+                if asked && !graph.world.shadows(node.delta, *variable) {
+                    concerned.insert(number);
+                }
+            }
+        }
+        graph.touched(&touched);
+        let before = graph.work.reevaluated;
+        graph.settle();
+        let looked_at = graph.work.reevaluated - before;
+        match looked_at == concerned.len() as u64 {
+            true => Ok(()),
+            false => Err(format!("I11: {looked_at} and not {}", concerned.len())),
+        }
+    }
+
+    /// I12: an action that was carried out as predicted leaves everything below it as it is.
+    pub(super) fn check_advance(
+        &mut self,
+        rest: &TaskList,
+        changes: &[FactChange],
+    ) -> Result<(), String> {
+        let Some(graph) = self.graphs.last_mut() else {
+            return Ok(());
+        };
+        let list = graph.world.list(rest);
+        let mut touched = super::world::Touched::default();
+        graph.world.apply(changes, &mut touched);
+        graph.touched(&touched);
+        if touched.all {
+            return Ok(());
+        }
+        let realised = graph.realised(list);
+        let untouched = |root: &u32| {
+            let mut open = vec![*root];
+            let mut seen = std::collections::BTreeSet::from([*root]);
+            while let Some(node) = open.pop() {
+                let node = &graph.nodes[node as usize];
+                if node.dirty {
+                    return false;
+                }
+                let new = node.out.iter().map(|edge| edge.to);
+                open.extend(new.filter(|to| seen.insert(*to)));
+            }
+            true
+        };
+        match realised.iter().any(untouched) {
+            true => Ok(()),
+            false => Err(format!("I12: all of {realised:?} are touched below")),
+        }
     }
 }
 

@@ -118,6 +118,34 @@ impl Lists {
         self.cells[list as usize].reads
     }
 
+    /// Keeps these lists and what follows on them alone. Returns their new numbers.
+    pub fn compact(&mut self, used: impl Iterator<Item = u32>) -> Map<u32, u32> {
+        let mut kept = vec![false; self.cells.len()];
+        for mut list in used {
+            while !std::mem::replace(&mut kept[list as usize], true) {
+                list = self.cells[list as usize].rest;
+            }
+        }
+        kept[NIL as usize] = true;
+        let mut numbers = Map::default();
+        let cells = std::mem::take(&mut self.cells);
+        self.table.clear();
+        let mut entries = vec![false; self.entries.len()];
+        // What follows on a list has a smaller number.
+        for (old, mut cell) in cells.into_iter().enumerate().filter(|(old, _)| kept[*old]) {
+            let new = self.cells.len() as u32;
+            numbers.insert(old as u32, new);
+            if new != NIL {
+                cell.rest = numbers.get(&cell.rest).copied().unwrap_or(NIL);
+                self.table.insert((cell.entry, cell.rest), new);
+                entries[cell.entry as usize] = true;
+            }
+            self.cells.push(cell);
+        }
+        self.others.retain(|_, entry| entries[*entry as usize]);
+        numbers
+    }
+
     /// The number of a set of numbers.
     pub fn set(&mut self, members: impl IntoIterator<Item = u32>) -> u32 {
         let mut words: Vec<u32> = Vec::new();

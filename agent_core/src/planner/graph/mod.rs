@@ -9,7 +9,9 @@
 
 mod alternatives;
 mod code;
+mod collect;
 mod decompose;
+mod dive;
 mod eval;
 mod facts;
 mod intern;
@@ -24,10 +26,11 @@ mod check;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use alternatives::Alternatives;
+use dive::Dive;
 use intern::NONE;
 use nodes::{Graph, INFINITE, Work};
 use replay::Replay;
@@ -35,11 +38,20 @@ use search::{Search, Step, walk};
 use world::{Key, Touched, World};
 
 use super::invariants::mutex_groups;
-use super::{Agenda, Outcome, Planner, Problem, Settings};
+use super::{Agenda, Outcome, Planner, Problem, Settings, TaskList};
 use crate::model::{Fact, FactChange};
+use crate::protocol::GoalId;
+
+/// Agendas of goals, as tasks.
+type Kept = BTreeMap<GoalId, Vec<TaskList>>;
 
 /// What one expansion counts, in visits of nodes that are known and repairs of costs.
 const VISITS_PER_EXPANSION: u64 = 8;
+/// After so many expansions in search of the best plan some plan is looked for, depth first, and
+/// after [`PATIENCE`] times as many the best that is known is taken.
+const EXPANSIONS_BEFORE_DIVING: u64 = 10_000;
+/// See [`EXPANSIONS_BEFORE_DIVING`].
+const PATIENCE: u64 = 4;
 /// How many maps are kept in mind.
 const GRAPHS: usize = 4;
 
@@ -54,8 +66,11 @@ pub struct GraphPlanner {
     /// One for each map, domain and execution model; the one used last is the last.
     graphs: Vec<Graph>,
     thinking: Option<Thinking>,
+    /// The agendas of goals that are not planned for at present.
+    kept: Kept,
     /// Whether facts of which at most one holds are one variable.
     merges: bool,
+    expansions_before_diving: u64,
 }
 
 /// What is being planned for.
@@ -71,6 +86,10 @@ struct Thinking {
     before: Work,
     /// Expansions until the best plan was found.
     expanded_for_best: u64,
+    /// A plan that was found depth first, and what it costs.
+    some: Option<(Vec<u32>, u64)>,
+    /// Whether the best plan is known to be the best.
+    proved: bool,
     upset: u64,
 }
 
@@ -80,6 +99,8 @@ enum Stage {
     Settle,
     /// Nodes are expanded.
     Search(Box<Search>),
+    /// Any plan is looked for, and then the search goes on.
+    Dive(Box<Dive>, Box<Search>),
     /// The best plan is known.
     Others(Box<Alternatives>),
 }
@@ -92,8 +113,17 @@ impl GraphPlanner {
             next_frame: 0,
             graphs: Vec::new(),
             thinking: None,
+            kept: BTreeMap::new(),
             merges: true,
+            expansions_before_diving: EXPANSIONS_BEFORE_DIVING,
         }
+    }
+
+    /// The same, but with so many expansions in search of the best plan before any plan is looked
+    /// for, and four times as many before the best that is known is taken.
+    pub fn impatient(mut self, expansions: u64) -> Self {
+        self.expansions_before_diving = expansions;
+        self
     }
 
     /// Makes the graph for a problem the last one, with the belief of the problem.
@@ -152,12 +182,28 @@ impl GraphPlanner {
                     }
                 }
                 Stage::Search(search) => match search.step(graph, depth) {
-                    Step::Visited(expanded) => budget = budget.saturating_sub(price(expanded)),
+                    Step::Visited(expanded) => {
+                        budget = budget.saturating_sub(price(expanded));
+                        thinking.grow_impatient(graph, self.expansions_before_diving);
+                    }
                     Step::Found(way, cost) => {
                         thinking.found = Some((way, cost));
                         thinking.stage = Stage::Settle;
                     }
-                    Step::Exhausted => thinking.stage = Stage::Settle,
+                    // Nothing is cheaper than what was found depth first.
+                    Step::Exhausted => {
+                        thinking.found = thinking.some.take();
+                        thinking.stage = Stage::Settle;
+                    }
+                },
+                Stage::Dive(dive, search) => match dive.step(graph, depth) {
+                    Step::Visited(expanded) => budget = budget.saturating_sub(price(expanded)),
+                    Step::Found(way, cost) => {
+                        search.bound = cost;
+                        thinking.some = Some((way, cost));
+                        thinking.stage = Stage::Search(search.clone());
+                    }
+                    Step::Exhausted => thinking.stage = Stage::Search(search.clone()),
                 },
                 Stage::Others(others) => match others.step(graph, depth) {
                     Some(expanded) => budget = budget.saturating_sub(price(expanded)),
@@ -182,7 +228,25 @@ impl Thinking {
         self.lists = tasks.map(|tasks| graph.world.list(tasks)).collect();
         self.stage = Stage::Settle;
         self.found = None;
+        self.some = None;
+        self.proved = true;
         self.upset = graph.upset;
+    }
+
+    /// Where the best plan is long in coming, any plan is looked for, and taken if need be.
+    fn grow_impatient(&mut self, graph: &Graph, patience: u64) {
+        let Stage::Search(search) = &mut self.stage else {
+            return;
+        };
+        if search.expansions == patience && !search.has_dived {
+            search.has_dived = true;
+            let dive = Dive::new(graph, &self.roots, PATIENCE * patience);
+            self.stage = Stage::Dive(Box::new(dive), search.clone());
+        } else if search.expansions >= PATIENCE * patience && self.some.is_some() {
+            self.found = self.some.take();
+            self.proved = false;
+            self.stage = Stage::Settle;
+        }
     }
 
     /// All costs are right. Returns `false` if there is no plan.
@@ -201,7 +265,8 @@ impl Thinking {
             return false;
         }
         let found = self.found.take();
-        let found = found.filter(|(_, cost)| depth.is_some() || *cost <= least);
+        let good = |cost: u64| depth.is_some() || !self.proved || cost <= least;
+        let found = found.filter(|(_, cost)| good(*cost));
         let way = found.map(|(way, _)| way);
         self.stage = match way.or_else(|| walk(graph, best, depth)) {
             None => Stage::Search(Box::new(Search::new(graph, &self.roots))),
@@ -233,6 +298,7 @@ impl Thinking {
             wanted: BTreeSet::new(),
             expanded: graph.work.expanded - self.before.expanded,
             expanded_for_best: self.expanded_for_best,
+            proved: self.proved,
         }
     }
 
@@ -259,6 +325,7 @@ impl Thinking {
                 .collect::<BTreeSet<Fact>>(),
             expanded,
             expanded_for_best: expanded,
+            proved: true,
         }
     }
 }
@@ -269,6 +336,9 @@ impl Planner for GraphPlanner {
         let Some(graph) = self.graphs.last_mut() else {
             return;
         };
+        if graph.is_full() {
+            graph.forget_all_but(agendas, &self.kept);
+        }
         let mut thinking = Thinking {
             agendas: agendas.to_vec(),
             lists: Vec::new(),
@@ -277,6 +347,8 @@ impl Planner for GraphPlanner {
             found: None,
             before: graph.work,
             expanded_for_best: 0,
+            some: None,
+            proved: true,
             upset: graph.upset,
         };
         thinking.restart(graph);
@@ -296,6 +368,15 @@ impl Planner for GraphPlanner {
 
     fn stop(&mut self) {
         self.thinking = None;
+    }
+
+    fn keep(&mut self, goal: &GoalId, agendas: &[Agenda]) {
+        let tasks = agendas.iter().map(|agenda| agenda.tasks.clone());
+        self.kept.insert(goal.clone(), tasks.collect());
+    }
+
+    fn release(&mut self, goal: &GoalId) {
+        self.kept.remove(goal);
     }
 
     fn observe(&mut self, changes: &[FactChange]) {

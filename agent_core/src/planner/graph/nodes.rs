@@ -106,6 +106,7 @@ pub(super) struct Graph {
     pub work: Work,
     /// Counts what makes a search that is under way worthless.
     pub upset: u64,
+    pub live_after_collection: usize,
 }
 
 impl Graph {
@@ -124,6 +125,7 @@ impl Graph {
             shapes_of: Map::default(),
             work: Work::default(),
             upset: 0,
+            live_after_collection: 0,
         }
     }
 
@@ -232,7 +234,7 @@ impl Graph {
         node
     }
 
-    fn note_shape(&mut self, list: u32, delta: u32) {
+    pub fn note_shape(&mut self, list: u32, delta: u32) {
         let pairs = self.world.deltas.get(delta).chunks_exact(2);
         let variables: Vec<u32> = pairs.map(|pair| pair[0]).collect();
         let shape = self.shapes.intern(&variables);
@@ -386,15 +388,20 @@ impl Graph {
         false
     }
 
-    /// The best node for a list in the belief as it is now: of all whose delta says nothing but
-    /// what is so, the one from which most is known. They all mean the same.
-    pub fn root(&mut self, list: u32) -> u32 {
+    /// All nodes for a list in the belief as it is now: those whose deltas say nothing but what is
+    /// so. They all mean the same.
+    pub fn realised(&self, list: u32) -> Vec<u32> {
         let shapes = self.shapes_of.get(&list);
         let realised = shapes.into_iter().flatten().filter_map(|shape| {
             let delta = self.world.realised(self.shapes.get(*shape))?;
             self.table.get(&(list, delta)).copied()
         });
-        let best = realised.max_by_key(|node| {
+        realised.collect()
+    }
+
+    /// The node for a list in the belief as it is now from which most is known.
+    pub fn root(&mut self, list: u32) -> u32 {
+        let best = self.realised(list).into_iter().max_by_key(|node| {
             let known = &self.nodes[*node as usize];
             (!known.dirty, known.expanded, known.v, Reverse(*node))
         });

@@ -31,16 +31,26 @@ pub(super) enum Step {
 }
 
 /// A search for the cheapest plan from some roots.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Search {
     /// By what is spent and estimated; among equals the one that has come furthest.
     frontier: BinaryHeap<Reverse<(u64, Reverse<u64>, u32)>>,
     reached: Map<u32, Reached>,
+    pub expansions: u64,
+    pub has_dived: bool,
+    /// What is not cheaper is not of interest: so much costs a plan that is known.
+    pub bound: u64,
 }
 
 impl Search {
     pub fn new(graph: &Graph, roots: &[u32]) -> Self {
-        let mut search = Self::default();
+        let mut search = Self {
+            frontier: BinaryHeap::new(),
+            reached: Map::default(),
+            expansions: 0,
+            has_dived: false,
+            bound: INFINITE,
+        };
         for root in roots {
             let reached = Reached {
                 spent: 0,
@@ -55,7 +65,7 @@ impl Search {
     fn reach(&mut self, graph: &Graph, node: u32, how: Reached) {
         let known = &graph.nodes[node as usize];
         let total = how.spent.saturating_add(known.v);
-        if total == INFINITE {
+        if total >= self.bound {
             return;
         }
         let before = self.reached.get(&node);
@@ -71,6 +81,9 @@ impl Search {
         let Some(Reverse((total, Reverse(spent), node))) = self.frontier.pop() else {
             return Step::Exhausted;
         };
+        if total >= self.bound {
+            return Step::Exhausted;
+        }
         let here = self.reached[&node];
         if here.spent != spent {
             return Step::Visited(false);
@@ -81,6 +94,7 @@ impl Search {
         }
         let fresh = !graph.nodes[node as usize].expanded;
         if fresh {
+            self.expansions += 1;
             graph.expand(node);
         }
         let acts = usize::from(graph.is_action(node));

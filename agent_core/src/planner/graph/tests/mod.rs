@@ -40,3 +40,34 @@ fn what_is_kept_is_as_good_as_planning_from_scratch() {
     assert!(10 * tally.plans > 3 * tally.replans, "{tally:?}");
     assert!(50 * tally.proved_none > tally.replans, "{tally:?}");
 }
+
+/// I15.
+#[test]
+fn the_same_history_is_answered_in_the_same_way() {
+    for seed in 0..30 {
+        let [one, other] = [(); 2].map(|()| {
+            let mut episode = Episode::new(seed);
+            episode.run(&mut Tally::default());
+            episode.trace
+        });
+        assert_eq!(one, other, "REPLAN_SEED={seed}");
+    }
+}
+
+/// A planner that takes the first plan that it finds.
+#[test]
+fn an_impatient_planner_finds_a_plan_wherever_there_is_one() {
+    let mut tally = Tally::default();
+    for seed in 0..500 {
+        Episode::new(seed).impatient().run(&mut tally);
+    }
+    assert!(tally.unproved > 20, "{tally:?}");
+}
+
+/// A planner that forgets what no goal leads to, all the time.
+#[test]
+fn what_is_forgotten_is_found_again() {
+    for seed in 0..500 {
+        Episode::new(seed).forgetful().run(&mut Tally::default());
+    }
+}
