@@ -7,6 +7,8 @@ use crate::ground::model::Task;
 
 /// Tasks with more tasks than this below them are taken to have everything below them.
 const MOST: usize = 4096;
+/// At most so many actions are kept, over all tasks.
+const MOST_KEPT: usize = 1 << 26;
 
 /// Actions below tasks, found when first asked for.
 pub(crate) struct Closures<'m> {
@@ -15,6 +17,7 @@ pub(crate) struct Closures<'m> {
     known: FxHashMap<u32, Option<Box<[u32]>>>,
     seen: Vec<u32>,
     stamp: u32,
+    kept: usize,
 }
 
 impl<'m> Closures<'m> {
@@ -25,13 +28,15 @@ impl<'m> Closures<'m> {
             known: FxHashMap::default(),
             seen: vec![0; model.tasks.len()],
             stamp: 0,
+            kept: 0,
         }
     }
 
     /// Whether the action is among what `task` may come to.
     pub fn has(&mut self, task: u32, action: u32) -> bool {
         if !self.known.contains_key(&task) {
-            let found = self.find(task);
+            let found = (self.kept < MOST_KEPT).then(|| self.find(task)).flatten();
+            self.kept += found.as_ref().map_or(0, |actions| actions.len());
             self.known.insert(task, found);
         }
         match self.known.get(&task) {

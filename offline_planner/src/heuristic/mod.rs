@@ -2,5 +2,6 @@
 
 pub(crate) mod additive;
 pub(crate) mod closure;
+pub(crate) mod conflict;
 mod queue;
 pub(crate) mod relaxed;

@@ -21,6 +21,7 @@ use crate::control::{Control, Halt};
 use crate::ground::Model;
 use crate::heuristic::additive::{Additive, NEVER};
 use crate::heuristic::closure::Closures;
+use crate::heuristic::conflict::Conflicts;
 use crate::heuristic::relaxed::Relaxed;
 
 /// One turn in so many takes the best of all places.
@@ -52,6 +53,7 @@ struct Greedy<'m> {
     walker: Walker<'m>,
     additive: Additive<'m>,
     closures: Closures<'m>,
+    conflicts: Conflicts<'m>,
     only_now: Vec<u32>,
     states: States,
     seen: FxHashSet<(u32, u32)>,
@@ -72,6 +74,7 @@ pub(crate) fn greedy(model: &Model, control: &Control<'_>) -> Found {
         walker: Walker::new(model),
         additive: Additive::new(model, &relaxed, 1, 1),
         closures: Closures::new(model),
+        conflicts: Conflicts::new(model),
         only_now: Vec::new(),
         states: States::new(model.init.len()),
         seen: FxHashSet::default(),
@@ -143,6 +146,9 @@ impl Greedy<'_> {
         control.expanded.fetch_add(1, Ordering::Relaxed);
         self.tasks.clear();
         self.tasks.extend(self.walker.stacks.tasks(place.stack));
+        if self.conflicts.hopeless(&self.tasks) {
+            return false;
+        }
         let Some(whole) = self.additive.evaluate(&self.walker.state, &self.tasks) else {
             return false;
         };
