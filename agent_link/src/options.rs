@@ -4,8 +4,8 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use agent_core::planner::{Depth, NaivePlanner, Settings};
-use clap::{Args, ValueEnum};
+use agent_core::planner::{AnyPlanner, Depth, PlannerKind, Settings};
+use clap::Args;
 use zenoh::Session;
 
 use crate::keys::{Keys, NameError};
@@ -78,9 +78,9 @@ pub struct PlaceOptions {
 /// How an agent plans.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct PlannerOptions {
-    /// The planner.
-    #[arg(long, value_enum, default_value_t)]
-    pub planner: PlannerKind,
+    /// The planner: `graph` keeps what it has found out, `naive` plans from scratch each time.
+    #[arg(long, value_name = "PLANNER", default_value_t)]
+    pub planner: PlannerOption,
     /// How far plans are decomposed: `full`, `first-action`, or a number of actions.
     #[arg(long, value_name = "DEPTH", default_value_t)]
     pub depth: DepthOption,
@@ -99,18 +99,15 @@ impl PlannerOptions {
     }
 
     /// The planner that was chosen.
-    pub fn make(&self) -> NaivePlanner {
-        match self.planner {
-            PlannerKind::Naive => NaivePlanner::new(self.settings()),
-        }
+    pub fn make(&self) -> AnyPlanner {
+        AnyPlanner::new(self.planner.0, self.settings())
     }
 
     /// As they are typed, to hand them on to another process.
     pub fn to_args(&self) -> Vec<String> {
-        let PlannerKind::Naive = self.planner;
         [
             "--planner",
-            "naive",
+            &self.planner.to_string(),
             "--depth",
             &self.depth.to_string(),
             "--alternatives",
@@ -121,12 +118,29 @@ impl PlannerOptions {
     }
 }
 
-/// The planners that there are.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq, ValueEnum)]
-pub enum PlannerKind {
-    /// Plans from scratch each time.
-    #[default]
-    Naive,
+/// [`PlannerKind`] as it is typed.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct PlannerOption(pub PlannerKind);
+
+impl FromStr for PlannerOption {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "graph" => Ok(Self(PlannerKind::Graph)),
+            "naive" => Ok(Self(PlannerKind::Naive)),
+            _ => Err("expected `graph` or `naive`".to_owned()),
+        }
+    }
+}
+
+impl fmt::Display for PlannerOption {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self.0 {
+            PlannerKind::Graph => "graph",
+            PlannerKind::Naive => "naive",
+        })
+    }
 }
 
 /// [`Depth`] as it is typed.
@@ -168,6 +182,15 @@ fn at_least_one(text: &str) -> Result<usize, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_planner_is_read_as_it_is_written() {
+        for text in ["graph", "naive"] {
+            assert_eq!(text.parse::<PlannerOption>().unwrap().to_string(), text);
+        }
+        assert!("none".parse::<PlannerOption>().is_err());
+        assert_eq!(PlannerOption::default().to_string(), "graph");
+    }
 
     #[test]
     fn a_depth_is_read_as_it_is_written() {

@@ -5,18 +5,17 @@ use std::convert::Infallible;
 use agent_core::agent::{Agent, Configuration};
 use agent_core::language::{parse_atom, parse_fact_change, parse_tasks};
 use agent_core::model::{Action, FactChange, Map, Symbol, Time};
-use agent_core::planner::NaivePlanner;
 use agent_core::protocol::{
     ActionId, Answer, Command, Event, GoalRequest, Happening, Input, Instruction, Machine, Output,
     Rejection, Reply, Report, Urgency,
 };
 
-use crate::agent;
+use crate::{TestPlanner, agent};
 
 /// One agent, with everything it has said.
 pub struct Bench {
     /// The agent.
-    pub agent: Agent<NaivePlanner>,
+    pub agent: Agent<TestPlanner>,
     /// The time that inputs are given at.
     pub now: Time,
     /// All events.

@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use agent_core::agent::{Agent, Configuration};
 use agent_core::model::Symbol;
-use agent_core::planner::{NaivePlanner, Settings};
+use agent_core::planner::Settings;
 use executor_sim::{Faults, Floor, MoverSpec, Place, SimulatedRobot};
 use maps::{Level, Site};
 
-use crate::{Stack, Wire};
+use crate::{Planning, Stack, TestPlanner, Wire};
 
 /// The museum, read once, to build stacks from.
 pub struct Museum {
@@ -20,6 +20,8 @@ pub struct Museum {
     pub area: Level,
     /// Node level.
     pub node: Level,
+    /// How the agents of its stacks plan.
+    pub planning: Planning,
 }
 
 /// Reads the museum.
@@ -31,6 +33,7 @@ pub fn museum() -> Museum {
         ),
         area: maps::read_level(&folder, "area").expect("the area level is in order"),
         node: maps::read_level(&folder, "node").expect("the node level is in order"),
+        planning: Planning::default(),
     }
 }
 
@@ -95,14 +98,28 @@ impl Museum {
         let mut child = self.child(start, "child", "executor");
         change(&mut parent);
         change(&mut child);
-        stack.add_agent(agent(parent), &["child"]);
-        stack.add_agent(agent(child), &["executor"]);
+        stack.add_agent(self.agent(parent), &["child"]);
+        stack.add_agent(self.agent(child), &["executor"]);
         stack.add_robot("executor", self.robot(start, faults));
         stack
     }
+
+    /// An agent that plans as the museum says.
+    pub fn agent(&self, configuration: Configuration) -> Agent<TestPlanner> {
+        agent_planning(configuration, self.planning, Settings::default())
+    }
 }
 
-/// An agent with the baseline planner.
-pub fn agent(configuration: Configuration) -> Agent<NaivePlanner> {
-    Agent::new(configuration, NaivePlanner::new(Settings::default()))
+/// An agent with the planner that agents have.
+pub fn agent(configuration: Configuration) -> Agent<TestPlanner> {
+    agent_planning(configuration, Planning::default(), Settings::default())
+}
+
+/// An agent that plans in that way.
+pub fn agent_planning(
+    configuration: Configuration,
+    planning: Planning,
+    settings: Settings,
+) -> Agent<TestPlanner> {
+    Agent::new(configuration, TestPlanner::new(planning, settings))
 }

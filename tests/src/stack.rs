@@ -6,19 +6,18 @@ use std::convert::Infallible;
 use agent_core::agent::Agent;
 use agent_core::language::{parse_atom, parse_fact_change, parse_tasks};
 use agent_core::model::{Action, FactChange, Symbol, Time};
-use agent_core::planner::NaivePlanner;
 use agent_core::protocol::{
     ActionId, Answer, Command, Event, GoalId, GoalRequest, Happening, Input, Instruction, Machine,
     Output, Rejection, Reply, Report, Urgency,
 };
 use executor_sim::SimulatedRobot;
 
-use crate::Wire;
+use crate::{TestPlanner, Wire};
 
 type AnyMachine = dyn Machine<In = Infallible, Out = Infallible>;
 
 enum Node {
-    Agent(Box<Agent<NaivePlanner>>),
+    Agent(Box<Agent<TestPlanner>>),
     Robot(Box<SimulatedRobot>),
     Other(Box<AnyMachine>),
 }
@@ -83,7 +82,7 @@ impl Stack {
     }
 
     /// Adds an agent; `executors` are those whose facts it wants to know.
-    pub fn add_agent(&mut self, agent: Agent<NaivePlanner>, executors: &[&str]) {
+    pub fn add_agent(&mut self, agent: Agent<TestPlanner>, executors: &[&str]) {
         let name = agent.name().clone();
         for executor in executors {
             self.superiors
@@ -105,7 +104,7 @@ impl Stack {
     }
 
     /// An agent.
-    pub fn agent(&self, name: &str) -> &Agent<NaivePlanner> {
+    pub fn agent(&self, name: &str) -> &Agent<TestPlanner> {
         match self.nodes.get(name) {
             Some(Node::Agent(agent)) => agent,
             _ => panic!("there is no agent named {name}"),

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use agent_core::language::parse_tasks;
 use agent_core::model::{Symbol, Time};
-use agent_core::planner::{Depth, NaivePlanner, Settings};
+use agent_core::planner::{Depth, Settings};
 use agent_core::protocol::{Command, GoalRequest, Happening, Resumption, Urgency};
 use executor_sim::{Fault, Faults};
-use intermezzo_tests::{Stack, Wire, agent, museum};
+use intermezzo_tests::{Planning, Stack, Wire, agent, agent_planning, museum};
 use maps::read_level;
 
 /// The exhibits at which an explanation was begun, one entry for each beginning.
@@ -329,7 +329,7 @@ fn the_paper_s_depth_of_planning_reaches_the_goal_too() {
             depth: Depth::FirstAction,
             ..Settings::default()
         };
-        agent_core::agent::Agent::new(configuration, NaivePlanner::new(settings))
+        agent_planning(configuration, Planning::default(), settings)
     };
     stack.add_agent(shallow(museum.parent("n1")), &["child"]);
     stack.add_agent(

@@ -3,6 +3,9 @@
 //! the agents' invariants hold after every input (the harness asserts them), and once all doors are
 //! open and nobody interferes, every goal that was accepted ends, and nothing is left behind.
 //!
+//! Three times: with the planner that agents have, from scratch, and with both, which must come to the same
+//! costs whenever an agent plans.
+//!
 //! `STORMS=10000 cargo test --release -p intermezzo_tests --test storm` weathers more of them;
 //! `STORM=7` only the one of that seed, and tells its story.
 
@@ -11,10 +14,10 @@ use std::collections::BTreeMap;
 use agent_core::model::{Symbol, Time};
 use agent_core::protocol::{Command, Happening, Urgency};
 use executor_sim::{Fault, Faults};
-use intermezzo_tests::{Museum, Stack, Wire, agent, museum};
+use intermezzo_tests::{Museum, Planning, Stack, Wire, museum};
 
 /// How many are weathered when nobody asks for more.
-const STORMS: u64 = 150;
+const STORMS: u64 = 100;
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
 struct Dice(u64);
@@ -64,9 +67,12 @@ fn stack(museum: &Museum, dice: &mut Dice, seed: u64) -> Stack {
     let mut stack = Stack::new(wire);
     let mut parent = museum.parent_of("n1", wings);
     parent.policy.keep_what_helps = keep_what_helps;
-    stack.add_agent(agent(parent), &["child", "east"]);
+    stack.add_agent(museum.agent(parent), &["child", "east"]);
     for name in ["child", "east"] {
-        stack.add_agent(agent(museum.child("n1", name, "executor")), &["executor"]);
+        stack.add_agent(
+            museum.agent(museum.child("n1", name, "executor")),
+            &["executor"],
+        );
     }
     stack.add_robot("executor", museum.robot("n1", faults));
     stack
@@ -149,7 +155,22 @@ fn storm(museum: &Museum, seed: u64) {
 
 #[test]
 fn after_a_storm_every_goal_has_ended_once_and_nothing_is_left() {
-    let museum = museum();
+    storms(Planning::AsShipped);
+}
+
+#[test]
+fn agents_that_plan_from_scratch_weather_storms_too() {
+    storms(Planning::FromScratch);
+}
+
+#[test]
+fn in_a_storm_no_plan_costs_more_than_one_from_scratch() {
+    storms(Planning::Both);
+}
+
+fn storms(planning: Planning) {
+    let mut museum = museum();
+    museum.planning = planning;
     let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
     if let Some(seed) = number("STORM") {
         return storm(&museum, seed);

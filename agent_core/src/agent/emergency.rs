@@ -184,7 +184,7 @@ impl<P: Planner> Agent<P> {
         }
         self.tell_plan(
             "it begins with the action that is running",
-            outcome.expanded,
+            outcome.expanded_for_best,
         );
         true
     }

@@ -169,9 +169,9 @@ impl<P: Planner> Agent<P> {
     fn succeeded(&mut self, execution: Execution, facts: &[FactChange]) {
         let step = execution.step;
         let predicted = planner::effect_of(&self.problem(), step.action());
-        let mut changes = self.belief.apply_all(&predicted);
+        let mut changes = self.learn(&predicted);
         let facts = self.known(facts);
-        let surprises = self.belief.apply_all(&facts);
+        let surprises = self.learn(&facts);
         let surprised = !surprises.is_empty();
         changes.extend(surprises);
         let model = self.configuration.model.actions.get(&step.purpose().name);
@@ -206,7 +206,7 @@ impl<P: Planner> Agent<P> {
     pub(super) fn failed(&mut self, execution: Execution, reason: String, facts: &[FactChange]) {
         let step = execution.step;
         let facts = self.known(facts);
-        let changes = self.belief.apply_all(&facts);
+        let changes = self.learn(&facts);
         if let Some(running) = &mut self.running {
             running.phase = Phase::Planning;
             running.surprised = true;

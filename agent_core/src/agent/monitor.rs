@@ -32,7 +32,7 @@ impl<P: Planner> Agent<P> {
     /// Facts that turned out otherwise though nobody acted.
     pub(super) fn observed(&mut self, facts: &[FactChange]) {
         let known = self.known(facts);
-        let changes = self.belief.apply_all(&known);
+        let changes = self.learn(&known);
         if changes.is_empty() {
             return;
         }
@@ -49,6 +49,14 @@ impl<P: Planner> Agent<P> {
         }
         self.look_after_the_action();
         self.tell_of_surprises();
+    }
+
+    /// Changes the belief, and tells the planner, which then need not find out. Returns what is
+    /// different.
+    pub(super) fn learn(&mut self, changes: &[FactChange]) -> Vec<FactChange> {
+        let changes = self.belief.apply_all(changes);
+        self.planner.observe(&changes);
+        changes
     }
 
     /// The belief is different: whoever waits for that goes on, and plans are looked at again.

@@ -41,13 +41,13 @@ impl<P: Planner> Agent<P> {
                 Happening::GoalResumed {
                     how,
                     why,
-                    expanded: outcome.expanded,
+                    expanded: outcome.expanded_for_best,
                 },
             );
         }
         self.clear_what_is_not_resumed();
         if !same {
-            self.tell_plan("it is the cheapest", outcome.expanded);
+            self.tell_plan("it is the cheapest", outcome.expanded_for_best);
         }
         self.execute_next();
     }

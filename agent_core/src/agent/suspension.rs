@@ -42,9 +42,9 @@ impl<P: Planner> Agent<P> {
         let step = execution.step;
         // Step 1.
         let declared = planner::effect_of_suspension(&self.problem(), step.purpose());
-        let mut changes = self.belief.apply_all(&declared);
+        let mut changes = self.learn(&declared);
         let facts = self.known(facts);
-        changes.extend(self.belief.apply_all(&facts));
+        changes.extend(self.learn(&facts));
         let problem = self.problem();
         if let Some(running) = &mut self.running {
             running.phase = Phase::Planning;

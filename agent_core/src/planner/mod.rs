@@ -1,5 +1,6 @@
 //! Planning: forward-chaining decomposition of tasks, best first by cost, alternatives kept.
 
+mod any;
 mod cost;
 mod decompose;
 mod estimate;
@@ -21,6 +22,7 @@ mod state;
 mod typing;
 mod what_if;
 
+pub use any::{AnyPlanner, PlannerKind};
 pub use graph::GraphPlanner;
 pub use hangs_on::{Reliance, hangs_on};
 pub use naive::NaivePlanner;

@@ -64,7 +64,8 @@ pub enum Happening {
         how: Resumption,
         /// In words.
         why: String,
-        /// Nodes that the planner expanded for it.
+        /// Nodes that the planner expanded until it knew the plan; looking for others to keep beside
+        /// it is not counted.
         expanded: u64,
     },
     /// It was reached.
@@ -89,7 +90,8 @@ pub enum Happening {
         alternatives: Vec<Cost>,
         /// In words.
         why: String,
-        /// Nodes that the planner expanded for it.
+        /// Nodes that the planner expanded until it knew the plan; looking for others to keep beside
+        /// it is not counted.
         expanded: u64,
     },
     /// A kept or followed plan no longer fits the belief.
