@@ -107,6 +107,9 @@ pub struct Task {
     pub kinds: Vec<KindId>,
     /// In the order in which they are written.
     pub methods: Vec<MethodId>,
+    /// What must hold when it is begun, or it cannot be carried through whatever the method; in
+    /// terms of its parameters.
+    pub necessary: Condition,
 }
 
 /// One way to decompose a task.

@@ -13,7 +13,8 @@ use super::{
 /// Rounds after which everything should long have settled.
 const ROUNDS: usize = 200;
 
-/// Fills in [`Method::necessary`] of every method, and [`Compiled::goals`].
+/// Fills in [`Method::necessary`], [`Task::necessary`](super::Task::necessary) and
+/// [`Compiled::goals`].
 pub(super) fn find(compiled: &mut Compiled) {
     let changes = PossibleChanges::of(compiled);
     compiled.goals = goals(compiled, &changes);
@@ -47,6 +48,11 @@ pub(super) fn find(compiled: &mut Compiled) {
     if !settled {
         // What has not settled may still be too much. The preconditions alone are safe.
         tasks = vec![Some(Condition::new()); compiled.tasks.len()];
+    }
+    for (task, necessary) in compiled.tasks.iter_mut().zip(&tasks) {
+        // A task that is never carried through asks for what never holds.
+        let never = || vec![Clause::Any(Vec::new())];
+        task.necessary = necessary.clone().unwrap_or_else(never);
     }
     for index in 0..compiled.methods.len() {
         let id = MethodId::new(index);

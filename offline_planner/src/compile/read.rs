@@ -94,6 +94,7 @@ impl<'a> Reader<'a> {
                 name: name.clone(),
                 kinds: self.kinds_of(parameters),
                 methods: Vec::new(),
+                necessary: Condition::new(),
             });
         }
         let has_costs = self
@@ -199,6 +200,7 @@ impl<'a> Reader<'a> {
             name,
             kinds: Vec::new(),
             methods: Vec::new(),
+            necessary: Condition::new(),
         });
         Ok(goal)
     }

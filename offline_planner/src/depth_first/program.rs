@@ -5,7 +5,9 @@ use rustc_hash::FxHashMap;
 use super::facts::Facts;
 use super::order::{Planner, Scope};
 use super::query::Query;
-use crate::compile::{Change, Compiled, KindId, Method, MethodId, PredicateId, Step, TaskId, Term};
+use crate::compile::{
+    Change, Clause, Compiled, KindId, Method, MethodId, PredicateId, Step, TaskId, Term,
+};
 
 /// Queries of all actions and methods.
 #[derive(Debug)]
@@ -14,11 +16,24 @@ pub struct Program {
     pub actions: Vec<ActionProgram>,
     /// By number of the method.
     pub methods: Vec<MethodProgram>,
+    /// What actions and tasks that are still to come need, and can never be had again once lost.
+    pub action_needs: Vec<Vec<Need>>,
+    pub task_needs: Vec<Vec<Need>>,
     /// For each task, whether a task list can grow while it is decomposed into itself.
     pub growing: Vec<bool>,
     /// The most variables and cursors that anything needs.
     pub width: usize,
     pub cursors: usize,
+}
+
+/// A fact of which no action can bring about that it is as it must be.
+#[derive(Debug)]
+pub struct Need {
+    /// Whether it must hold.
+    pub holds: bool,
+    pub predicate: PredicateId,
+    /// In terms of the parameters of the action or task.
+    pub args: Vec<Term>,
 }
 
 #[derive(Debug)]
@@ -99,6 +114,12 @@ impl Program {
         Self {
             width: most.fold(width, usize::max),
             cursors,
+            action_needs: (compiled.actions.iter())
+                .map(|action| needs(compiled, &action.precondition))
+                .collect(),
+            task_needs: (compiled.tasks.iter())
+                .map(|task| needs(compiled, &task.necessary))
+                .collect(),
             growing: growing(compiled),
             actions,
             methods,
@@ -143,6 +164,27 @@ impl Planner<'_> {
             query: self.query(&clauses, &scope),
         }
     }
+}
+
+/// Those facts of a condition that can be lost and never be had again.
+fn needs(compiled: &Compiled, condition: &[Clause]) -> Vec<Need> {
+    let facts = condition.iter().filter_map(|clause| match clause {
+        Clause::Fact(holds, fact) => {
+            let predicate = compiled.predicate(fact.predicate);
+            let (gained, lost) = if *holds {
+                (predicate.added, predicate.removed)
+            } else {
+                (predicate.removed, predicate.added)
+            };
+            (lost && !gained).then(|| Need {
+                holds: *holds,
+                predicate: fact.predicate,
+                args: fact.args.clone(),
+            })
+        }
+        _ => None,
+    });
+    facts.collect()
 }
 
 /// Tasks that can occur in what they are decomposed into, with something left to do after them: to

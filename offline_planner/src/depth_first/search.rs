@@ -55,6 +55,7 @@ struct Fork {
     chosen: u32,
     bindings: u32,
     opened: u32,
+    needs: u32,
 }
 
 /// A depth-first search that can be interrupted and taken up again.
@@ -79,6 +80,11 @@ pub struct DepthFirst {
     done: Numbers,
     /// What was opened (`true`) and closed, to be taken back.
     opened: Vec<(u64, bool)>,
+    /// How many of what is still to be done need a fact (the last bit: to hold) that can be lost
+    /// and never be had again.
+    needed: FxHashMap<(PredicateId, FactPlace, bool), u32>,
+    /// Where such a count went up (`true`) and down, to be taken back.
+    needs: Vec<((PredicateId, FactPlace, bool), bool)>,
     /// Whether something was left out that may be part of a plan.
     left_out: bool,
     /// If there is chance in the order of choices, it comes from here.
@@ -146,6 +152,8 @@ impl DepthFirst {
             begun: Numbers::default(),
             done: Numbers::default(),
             opened: Vec::new(),
+            needed: FxHashMap::default(),
+            needs: Vec::new(),
             left_out: false,
             chance: None,
             dead_ends: 0,
@@ -169,6 +177,8 @@ impl DepthFirst {
         self.bindings.clear();
         self.open.clear();
         self.opened.clear();
+        self.needed.clear();
+        self.needs.clear();
         self.met = Numbers::default();
         self.begun = Numbers::default();
         self.done = Numbers::default();
@@ -264,6 +274,7 @@ impl DepthFirst {
         }
         match node.kind {
             NodeKind::Action(action) => {
+                self.count_needs(self.current, false);
                 if !self.execute(action, node) {
                     return Advance::Dead;
                 }
@@ -301,6 +312,11 @@ impl DepthFirst {
                     Some((number, true)) => self.close(number),
                     Some((number, false)) => *self.open.entry(number).or_insert(0) += 1,
                     None => {}
+                }
+            }
+            while self.needs.len() > fork.needs as usize {
+                if let Some((need, up)) = self.needs.pop() {
+                    self.count_need(need, !up);
                 }
             }
             let saved = fork.cursors as usize..self.cursors.len();
@@ -376,6 +392,7 @@ impl DepthFirst {
             chosen: self.chosen.len() as u32,
             bindings: self.bindings.len() as u32,
             opened: self.opened.len() as u32,
+            needs: self.needs.len() as u32,
         });
         self.cursors
             .extend_from_slice(&self.scratch.cursors[..choices]);
@@ -388,6 +405,7 @@ impl DepthFirst {
         let bindings = &self.scratch.bindings[..method_.kinds.len()];
         self.chosen.push(method);
         self.bindings.extend_from_slice(bindings);
+        self.count_needs(self.current, false);
         let mut next = node.next;
         if self.program.growing[task.index()] {
             let number = self.number_of(self.current);
@@ -413,6 +431,7 @@ impl DepthFirst {
                 Step::Task(task) => NodeKind::Task(task),
             };
             next = self.push_node(kind, args, next);
+            self.count_needs(next, true);
         }
         self.current = next;
     }
@@ -466,6 +485,46 @@ impl DepthFirst {
         }
     }
 
+    /// Counts what the action or task at the node needs, from when it is on the list until it is
+    /// its turn.
+    fn count_needs(&mut self, id: u32, up: bool) {
+        let node = self.nodes[id as usize];
+        let needs = match node.kind {
+            NodeKind::Action(action) => &self.program.action_needs[action.index()],
+            NodeKind::Task(task) => &self.program.task_needs[task.index()],
+            NodeKind::Close(_) => return,
+        };
+        let first = self.needs.len();
+        for need in needs {
+            let tuple = &mut self.scratch.tuple;
+            tuple.clear();
+            let args = &self.args[node.args as usize..];
+            tuple.extend(need.args.iter().map(|term| term.value(args)));
+            if let Some(place) = self.facts.table_mut(need.predicate).place_of(tuple) {
+                self.needs.push(((need.predicate, place, need.holds), up));
+            }
+        }
+        for at in first..self.needs.len() {
+            let (need, up) = self.needs[at];
+            self.count_need(need, up);
+        }
+    }
+
+    fn count_need(&mut self, need: (PredicateId, FactPlace, bool), up: bool) {
+        let count = self.needed.entry(need).or_insert(0);
+        *count = if up {
+            *count + 1
+        } else {
+            count.saturating_sub(1)
+        };
+    }
+
+    /// Whether something that is still to be done needs the fact to be so.
+    fn is_needed(&self, predicate: PredicateId, place: FactPlace, holds: bool) -> bool {
+        !self.needed.is_empty()
+            && (self.needed.get(&(predicate, place, holds))).is_some_and(|count| *count > 0)
+    }
+
     fn close(&mut self, number: u64) {
         if let Some(count) = self.open.get_mut(&number) {
             *count -= 1;
@@ -517,6 +576,13 @@ impl DepthFirst {
             }
         }
         // Removals come first in the list.
+        let changes = self.scratch.changes.iter().enumerate();
+        for (at, (predicate, place)) in changes {
+            if self.is_needed(*predicate, *place, at < removals) {
+                return false;
+            }
+        }
+        let scratch = &self.scratch;
         for (predicate, place) in &scratch.changes[..removals] {
             self.facts.remove(*predicate, *place);
         }
@@ -535,6 +601,7 @@ impl DepthFirst {
             + self.chosen.capacity() * size_of::<MethodId>()
             + self.open.capacity() * size_of::<(u64, u32)>()
             + self.opened.capacity() * size_of::<(u64, bool)>()
+            + self.needs.capacity() * size_of::<((PredicateId, FactPlace, bool), bool)>()
             + self.met.bytes()
             + self.begun.bytes()
             + self.done.bytes()

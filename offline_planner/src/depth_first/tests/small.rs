@@ -284,3 +284,34 @@ fn a_goal_that_no_later_task_can_help_cuts_the_search() {
     let plan = judged(&domain, &problem, &compiled, &outcome);
     assert_eq!(actions(&plan).len(), 30);
 }
+
+#[test]
+fn what_a_later_step_needs_is_not_used_up_before() {
+    // Whatever is opened stays open, and `close_up` needs the place shut; only the last of many
+    // choices leaves it so, for each of thirty tasks.
+    let mut domain = domain("(:task maybe :parameters (?p - place))");
+    domain.pop();
+    domain += "(:action open_up :parameters (?p - place) :precondition () :effect (open ?p))
+        (:action close_up :parameters (?p - place) :precondition (not (open ?p))
+          :effect (seen ?p))
+        (:method any :parameters (?p - place) :task (maybe ?p) :ordered-subtasks (and (open_up ?p)))
+        (:method none :parameters (?p - place) :task (maybe ?p) :ordered-subtasks (and)))";
+    let places: Vec<String> = (0..30).map(|place| format!("n{place}")).collect();
+    let tasks = |name: &str| -> String {
+        places
+            .iter()
+            .map(|place| format!("({name} {place})"))
+            .collect()
+    };
+    let problem = format!(
+        "(define (problem one) (:domain small) (:objects {} - place)
+         (:htn :ordered-subtasks (and {} {})) (:init))",
+        places.join(" "),
+        tasks("maybe"),
+        tasks("close_up")
+    );
+    let compiled = compiled(&domain, &problem);
+    let outcome = depth_first(&compiled, 100);
+    let plan = judged(&domain, &problem, &compiled, &outcome);
+    assert_eq!(actions(&plan).len(), 30);
+}
