@@ -34,38 +34,48 @@ pub(crate) struct Run<'a> {
 impl Run<'_> {
     /// Searches until there is an answer or no time.
     pub fn verdict(&self, progress: &mut dyn FnMut(&Progress)) -> Verdict {
-        let expanded = AtomicU64::new(0);
+        let expanded = Arc::new(AtomicU64::new(0));
         let mut depth_first = DepthFirst::new(&self.compiled);
         let alone = self.turn(self.begin + ALONE, &expanded);
-        let mut first = Some(match depth_first.run(&alone) {
-            Outcome::Stopped(Halt::Told) if !self.is_over() => {
-                self.tell(progress, "depth first", &expanded);
-                depth_first
-            }
-            Outcome::Stopped(Halt::Memory) if !self.is_over() => {
-                drop(depth_first);
-                DepthFirst::new(&self.compiled)
-            }
+        let mut first = match depth_first.run(&alone) {
+            Outcome::Stopped(Halt::Told) if !self.is_over() => Some(depth_first),
+            // What it has tried would have to be forgotten.
+            Outcome::Stopped(Halt::Memory) if !self.is_over() => None,
             outcome => return self.answer(outcome),
-        });
-        let over = AtomicBool::new(false);
+        };
+        self.tell(progress, "depth first", &expanded);
+        let over = Arc::new(AtomicBool::new(false));
+        let informed = self.begin_informed(&over, &expanded);
+        let outcome = self.take_turns(&mut first, &informed, &expanded, progress);
+        // It ends by itself; nobody waits for it, as it may be in the midst of something long.
+        over.store(true, Ordering::Relaxed);
+        self.answer(outcome)
+    }
+
+    /// Gives the informed search a thread of its own.
+    fn begin_informed(
+        &self,
+        over: &Arc<AtomicBool>,
+        expanded: &Arc<AtomicU64>,
+    ) -> Receiver<Outcome> {
         let (sender, receiver) = mpsc::channel();
-        let outcome = thread::scope(|scope| {
+        let (over, expanded) = (Arc::clone(over), Arc::clone(expanded));
+        let compiled = Arc::clone(&self.compiled);
+        let deadline = self.deadline();
+        let memory_limit_bytes = self.options.memory_limit_bytes / 3;
+        let seed = self.options.seed;
+        thread::spawn(move || {
             let control = Control {
                 stop: &over,
-                deadline: self.deadline(),
-                ..self.turn(self.begin, &expanded)
+                deadline,
+                memory_limit_bytes,
+                expanded: &expanded,
+                seed,
             };
-            let compiled = &*self.compiled;
-            scope.spawn(move || {
-                // Nobody listens any more if another search was faster.
-                let _ = sender.send(informed::search(compiled, &control));
-            });
-            let outcome = self.take_turns(&mut first, &receiver, &expanded, progress);
-            over.store(true, Ordering::Relaxed);
-            outcome
+            // Nobody listens any more if another search was faster.
+            let _ = sender.send(informed::search(&compiled, &control));
         });
-        self.answer(outcome)
+        receiver
     }
 
     /// Depth-first search and restarts in turns, until they or the informed search have an answer.
