@@ -8,6 +8,7 @@ mod control;
 mod depth_first;
 mod ground;
 mod heuristic;
+mod improve;
 pub mod informed;
 pub mod plan;
 mod portfolio;

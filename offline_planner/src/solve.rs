@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use agent_core::model::{Cost, Domain, Instance};
 
 use crate::compile::{Compiled, Unfit};
+use crate::improve;
 use crate::plan::Solution;
 use crate::portfolio::Run;
 
@@ -84,5 +85,9 @@ pub fn solve(
         begin,
         stop,
     };
-    Ok(run.verdict(progress))
+    Ok(if options.optimal {
+        improve::optimal(&run, progress)
+    } else {
+        run.verdict(progress)
+    })
 }

@@ -3,5 +3,6 @@
 pub(crate) mod additive;
 pub(crate) mod closure;
 pub(crate) mod conflict;
+pub(crate) mod least;
 mod queue;
 pub(crate) mod relaxed;

@@ -129,7 +129,7 @@ impl Greedy<'_> {
                     break;
                 }
             }
-            if ahead == 0 || control.is_over() {
+            if ahead == 0 || self.check(control).is_err() {
                 return None;
             }
         }
