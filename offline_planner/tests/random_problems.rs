@@ -276,12 +276,14 @@ fn judged(problem: &Problem, solution: &Solution, seed: u64) {
 fn what_the_planner_says_of_random_problems_is_true() {
     let mut plans = 0;
     let mut unsolvable = 0;
+    let mut optimal_plans = 0;
     for seed in 0..seeds() {
         let problem = Problem::random(seed);
         for optimal in [false, true] {
             match planned(&problem, optimal) {
                 Verdict::Plan(solution) => {
                     plans += 1;
+                    optimal_plans += u64::from(solution.optimal);
                     judged(&problem, &solution, seed);
                     if solution.optimal
                         && let Some(shortest) = problem.shortest(2)
@@ -300,8 +302,9 @@ fn what_the_planner_says_of_random_problems_is_true() {
             }
         }
     }
-    let counts = format!("{plans} plans, {unsolvable} unsolvable");
+    let counts = format!("{plans} plans, {optimal_plans} optimal, {unsolvable} unsolvable");
     assert!(plans > seeds() / 4 && unsolvable > seeds() / 4, "{counts}");
+    assert!(optimal_plans > seeds() / 8, "{counts}");
 }
 
 /// How many problems; `RANDOM_PROBLEMS` asks for another number.

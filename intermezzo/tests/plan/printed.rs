@@ -19,6 +19,18 @@ fn names_are_spelt_as_their_author_did() {
 }
 
 #[test]
+fn the_cheapest_plan_is_found_if_asked_and_proved_to_be_it() {
+    let said = Desk::ward().run(&["--optimal"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    // To the kitchen, back through the hall to Room3, back to the hall, and to Room1.
+    assert_eq!(judged_right(&said.out).cost, 6.0 + 23.0 + 17.0 + 12.0);
+    assert!(
+        said.err.contains("cost 58, and none is cheaper"),
+        "{said:?}"
+    );
+}
+
+#[test]
 fn a_plan_as_json_has_its_actions_and_its_tree() {
     let said = Desk::ward().run(&["--json"]);
     assert_eq!(said.code, Some(0), "{said:?}");
