@@ -102,7 +102,18 @@ pub struct Outcome {
 ///
 /// Decision 7 has three outcomes: plans, the proof that there is none, and *unknown as yet*, which
 /// is that [`think`](Self::think) returns `None` and wants to be called again.
+///
+/// How a planner is used: [`observe`](Self::observe) with every change of the belief, when it
+/// happens; [`begin`](Self::begin) with the belief as it is and the agendas of the goal that is
+/// pursued; [`think`](Self::think) until there is an outcome. Nothing but `begin`, `think` and `stop`
+/// is needed for right answers: what is told besides makes them cheaper. Agendas may be any lists
+/// of tasks; those that follow from an earlier plan (what comes after a step, an open task again, an
+/// action resumed) are met again in what is known.
 pub trait Planner {
+    /// Reads a map and a belief that are going to be planned with, which takes as long as they are
+    /// large. Otherwise the first [`begin`](Self::begin) does.
+    fn prepare(&mut self, _problem: &Problem) {}
+
     /// Begins to plan for the cheapest of `agendas`. What was begun before is given up.
     fn begin(&mut self, problem: Problem, agendas: &[Agenda]);
 

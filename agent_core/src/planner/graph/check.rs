@@ -66,7 +66,7 @@ impl GraphPlanner {
         let Some(graph) = self.graphs.last_mut() else {
             return Ok(());
         };
-        let mut touched = super::world::Touched::default();
+        let mut touched = super::key::Touched::default();
         graph.world.apply(changes, &mut touched);
         if touched.all {
             graph.touched(&touched);
@@ -102,7 +102,7 @@ impl GraphPlanner {
             return Ok(());
         };
         let list = graph.world.list(rest);
-        let mut touched = super::world::Touched::default();
+        let mut touched = super::key::Touched::default();
         graph.world.apply(changes, &mut touched);
         graph.touched(&touched);
         if touched.all {

@@ -4,8 +4,9 @@
 use super::code::{Arg, Method};
 use super::eval::{Eval, bind, ground};
 use super::intern::NONE;
+use super::key::Key;
 use super::lists::NIL;
-use super::world::{Key, World};
+use super::world::World;
 use crate::model::Cost;
 
 /// One way on.

@@ -2,7 +2,8 @@
 
 use super::code::{Arg, Operator, Shape, Test, Value, Write};
 use super::intern::NONE;
-use super::world::{Key, World};
+use super::key::Key;
+use super::world::World;
 use crate::model::Cost;
 
 /// A state, and what was asked of it.

@@ -14,7 +14,9 @@ mod decompose;
 mod dive;
 mod eval;
 mod facts;
+mod groups;
 mod intern;
+mod key;
 mod lists;
 mod nodes;
 mod replay;
@@ -32,10 +34,11 @@ use std::sync::Arc;
 use alternatives::Alternatives;
 use dive::Dive;
 use intern::NONE;
+use key::{Key, Touched};
 use nodes::{Graph, INFINITE, Work};
 use replay::Replay;
 use search::{Search, Step, walk};
-use world::{Key, Touched, World};
+use world::World;
 
 use super::invariants::mutex_groups;
 use super::{Agenda, Outcome, Planner, Problem, Settings, TaskList};
@@ -139,7 +142,7 @@ impl GraphPlanner {
                     self.graphs.remove(0);
                 }
                 let groups = match self.merges {
-                    true => world::disjoint(&mutex_groups(&problem.domain, &problem.model)),
+                    true => groups::disjoint(&mutex_groups(&problem.domain, &problem.model)),
                     false => Vec::new(),
                 };
                 let world = World::new(problem, groups);
@@ -331,6 +334,10 @@ impl Thinking {
 }
 
 impl Planner for GraphPlanner {
+    fn prepare(&mut self, problem: &Problem) {
+        self.fetch(problem);
+    }
+
     fn begin(&mut self, problem: Problem, agendas: &[Agenda]) {
         self.fetch(&problem);
         let Some(graph) = self.graphs.last_mut() else {

@@ -5,8 +5,9 @@ use std::collections::{BinaryHeap, VecDeque};
 
 use super::decompose::{self, Way};
 use super::intern::{Map, Slices};
+use super::key::{Key, Touched};
 use super::lists::NIL;
-use super::world::{Key, Touched, World};
+use super::world::World;
 
 /// No way.
 pub(super) const INFINITE: u64 = u64::MAX;

@@ -1,65 +1,16 @@
 //! The belief and the map in numbers, as variables of which each has one value.
 
-use std::cmp::Reverse;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::code::Code;
 use super::facts::{Facts, Source};
+use super::groups::Members;
 use super::intern::{Map, NONE, Names, Slices};
+use super::key::{Key, Touched};
 use super::lists::{Lists, NIL};
 use crate::model::{Action, Atom, Belief, Domain, ExecutionModel, FactChange, Symbol};
-use crate::planner::invariants::{Group, Role};
 use crate::planner::{Item, Problem, TaskList};
-
-/// What a node may have asked for, so that it is looked at again when that changes.
-#[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
-pub(super) enum Key {
-    /// The value of a variable.
-    Variable(u32),
-    /// Which facts of a predicate there are, with this object at this place (from 1; 0: with any).
-    Pattern(u32, u32, u32),
-    /// The value of a function.
-    Value(u32),
-    /// Whether an action may be tried.
-    Action(u32),
-}
-
-/// Facts of which at most one holds at a time, for each choice of their parameters: predicates,
-/// and which of their arguments are the parameters, in the order of the group's.
-pub(super) type Members = Vec<(Symbol, Vec<usize>)>;
-
-/// Of the groups that are known, some in which no predicate occurs twice: the largest first.
-pub(super) fn disjoint(groups: &[Group]) -> Vec<Members> {
-    let mut sorted: Vec<&Group> = groups.iter().collect();
-    sorted.sort_by_key(|group| (Reverse(group.parts().len()), group.parameters()));
-    let mut taken = BTreeSet::new();
-    let mut chosen = Vec::new();
-    for group in sorted {
-        let mut members = Members::new();
-        let mut counts = false;
-        for part in group.parts() {
-            if !taken.contains(&part.predicate) {
-                let mut places: Vec<(usize, usize)> = Vec::new();
-                for (place, role) in part.args.iter().enumerate() {
-                    match role {
-                        Role::Parameter(index) => places.push((*index, place)),
-                        Role::Counted => counts = true,
-                    }
-                }
-                places.sort_unstable();
-                let places = places.into_iter().map(|(_, place)| place).collect();
-                members.push((part.predicate.clone(), places));
-            }
-        }
-        // One fact alone is a variable anyway.
-        if counts || members.len() > 1 {
-            taken.extend(members.iter().map(|(predicate, _)| predicate.clone()));
-            chosen.push(members);
-        }
-    }
-    chosen
-}
 
 /// What there is to be known, and names for all that is made of it.
 #[derive(Clone, Debug)]
@@ -98,17 +49,6 @@ pub(super) struct World {
     forbidden: BTreeSet<u32>,
     /// Of the belief as it is known here.
     fingerprint: u64,
-}
-
-/// What a change of the belief comes to.
-#[derive(Debug, Default)]
-pub(super) struct Touched {
-    /// What is different, and the variable that is, if it is one: a node whose delta says something
-    /// of that does not see the difference.
-    pub keys: Vec<(Key, u32)>,
-    /// Whether facts have changed of which it was thought that they do not: nothing that was
-    /// found out before can be trusted.
-    pub all: bool,
 }
 
 impl World {
