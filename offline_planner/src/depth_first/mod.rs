@@ -5,11 +5,14 @@
 
 mod facts;
 mod hash;
+mod needs;
+mod nesting;
 mod order;
 mod program;
 mod query;
 mod restarts;
 mod search;
+mod settled;
 mod table;
 #[cfg(test)]
 mod tests;

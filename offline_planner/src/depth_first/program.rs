@@ -6,7 +6,7 @@ use super::facts::Facts;
 use super::order::{Planner, Scope};
 use super::query::Query;
 use crate::compile::{
-    Change, Clause, Compiled, KindId, Method, MethodId, PredicateId, Step, TaskId, Term,
+    Change, Clause, Compiled, KindId, Method, MethodId, ObjectId, PredicateId, Step, TaskId, Term,
 };
 
 /// Queries of all actions and methods.
@@ -56,6 +56,24 @@ pub struct MethodProgram {
     /// How the task's arguments bind variables.
     pub head: Vec<HeadStep>,
     pub query: Query,
+}
+
+impl MethodProgram {
+    /// Binds the method's variables to the task's arguments; `false` if they do not fit.
+    pub fn bind_head(
+        &self,
+        compiled: &Compiled,
+        args: &[ObjectId],
+        bindings: &mut [ObjectId],
+    ) -> bool {
+        self.head.iter().zip(args).all(|(step, arg)| match step {
+            HeadStep::Bind(variable, kind) => {
+                bindings[*variable] = *arg;
+                compiled.kind(*kind).contains(*arg)
+            }
+            HeadStep::Is(term) => term.value(bindings) == *arg,
+        })
+    }
 }
 
 /// What is done with one argument of the task.

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use rustc_hash::FxHashMap;
-
 use super::facts::Facts;
 use super::hash::{Numbers, join, spread};
-use super::program::{HeadStep, Program};
+use super::needs::Needs;
+use super::nesting::Nesting;
+use super::program::Program;
 use super::query::AtHand;
+use super::settled::Settled;
 use super::table::FactPlace;
 use crate::compile::{ActionId, Compiled, MethodId, ObjectId, PredicateId, Step, TaskId};
 use crate::control::{Control, Halt, Outcome};
@@ -73,18 +74,10 @@ pub struct DepthFirst {
     bindings: Vec<ObjectId>,
     /// States with task lists that have been met.
     met: Numbers,
-    /// Tasks that are being decomposed, with the state in which that began; how many of each.
-    open: FxHashMap<u64, u32>,
-    /// Tasks, with states, that were ever begun, and those that were ever done.
-    begun: Numbers,
-    done: Numbers,
-    /// What was opened (`true`) and closed, to be taken back.
-    opened: Vec<(u64, bool)>,
-    /// How many of what is still to be done need a fact (the last bit: to hold) that can be lost
-    /// and never be had again.
-    needed: FxHashMap<(PredicateId, FactPlace, bool), u32>,
-    /// Where such a count went up (`true`) and down, to be taken back.
-    needs: Vec<((PredicateId, FactPlace, bool), bool)>,
+    /// Tasks that are being decomposed, with the states in which that began.
+    nesting: Nesting,
+    /// What must not be lost.
+    needs: Needs,
     /// Whether something was left out that may be part of a plan.
     left_out: bool,
     /// If there is chance in the order of choices, it comes from here.
@@ -93,11 +86,8 @@ pub struct DepthFirst {
     dead_ends: u64,
     /// After so many dead ends it gives up.
     patience: u64,
-    /// For each task of the problem in order, the facts that must hold (or not) once it is done,
-    /// as no later task can help them.
-    settled: Vec<Vec<Settled>>,
-    /// How often a task may be begun within itself in one and the same state.
-    nesting: u32,
+    /// What must be so where one task of the problem ends and the next begins.
+    settled: Settled,
     expanded: u64,
     scratch: Scratch,
 }
@@ -108,14 +98,6 @@ struct Scratch {
     cursors: Vec<u32>,
     changes: Vec<(PredicateId, FactPlace)>,
     tuple: Vec<ObjectId>,
-}
-
-/// A fact that must hold, or must not.
-#[derive(Debug)]
-struct Settled {
-    holds: bool,
-    predicate: PredicateId,
-    args: Vec<ObjectId>,
 }
 
 /// How one step of the search ended.
@@ -148,26 +130,22 @@ impl DepthFirst {
             chosen: Vec::new(),
             bindings: Vec::new(),
             met: Numbers::default(),
-            open: FxHashMap::default(),
-            begun: Numbers::default(),
-            done: Numbers::default(),
-            opened: Vec::new(),
-            needed: FxHashMap::default(),
-            needs: Vec::new(),
+            nesting: Nesting::default(),
+            needs: Needs::default(),
             left_out: false,
             chance: None,
             dead_ends: 0,
             patience: u64::MAX,
-            settled: settled(compiled),
-            nesting: 0,
+            settled: Settled::new(compiled),
             expanded: 0,
         };
-        search.begin();
+        search.begin(0);
         search
     }
 
-    /// The whole problem is to be done, and nothing has been tried.
-    fn begin(&mut self) {
+    /// The whole problem is to be done, and nothing has been tried. Tasks may be begun within
+    /// themselves so often.
+    fn begin(&mut self, nesting: u32) {
         self.facts.undo_to(0);
         self.nodes.clear();
         self.args.clear();
@@ -175,13 +153,9 @@ impl DepthFirst {
         self.cursors.clear();
         self.chosen.clear();
         self.bindings.clear();
-        self.open.clear();
-        self.opened.clear();
-        self.needed.clear();
+        self.nesting = Nesting::allowing(nesting);
         self.needs.clear();
         self.met = Numbers::default();
-        self.begun = Numbers::default();
-        self.done = Numbers::default();
         self.left_out = false;
         let top = NodeKind::Task(self.compiled.top);
         self.current = self.push_node(top, 0, END);
@@ -216,8 +190,7 @@ impl DepthFirst {
                         return Outcome::Unsolvable;
                     }
                     // Once more, with more of what was left out.
-                    self.nesting += 1;
-                    self.begin();
+                    self.begin(self.nesting.most() + 1);
                 }
             }
         }
@@ -232,25 +205,18 @@ impl DepthFirst {
     /// Begins anew, with chance in the order of choices, and for so many dead ends; then
     /// [`DepthFirst::run`] ends with [`Halt::Incomplete`].
     pub fn restart(&mut self, seed: u64, patience: u64) {
-        self.nesting = 0;
         self.dead_ends = 0;
         self.patience = patience;
         self.chance = Some(spread(seed));
-        self.begin();
+        self.begin(0);
     }
 
     /// Whether what the tasks that are done should have brought about is so, as far as nothing that
     /// is left can help it. Looked at where one task of the problem ends and the next begins.
     fn is_settled(&self) -> bool {
         // The subtasks of the top were made first, the last of them first.
-        let place = self.settled.len().checked_sub(self.current as usize);
-        let Some(settled) = place.and_then(|place| self.settled.get(place)) else {
-            return true;
-        };
-        settled.iter().all(|settled| {
-            let args = settled.args.iter().copied();
-            self.facts.holds(settled.predicate, args) == settled.holds
-        })
+        let place = self.settled.tasks().checked_sub(self.current as usize);
+        place.is_none_or(|place| self.settled.allows(place, &self.facts))
     }
 
     fn choices(&self) -> Choices {
@@ -281,13 +247,13 @@ impl DepthFirst {
                 self.current = node.next;
             }
             NodeKind::Close(number) => {
-                self.close(number);
-                self.done.insert(number);
-                self.opened.push((number, false));
+                self.nesting.close(number);
                 self.current = node.next;
             }
             NodeKind::Task(task) => {
-                if self.program.growing[task.index()] && !self.may_open(self.current) {
+                if self.program.growing[task.index()]
+                    && !self.nesting.may_open(self.number_of(self.current))
+                {
                     self.left_out = true;
                     return Advance::Dead;
                 }
@@ -307,18 +273,8 @@ impl DepthFirst {
             self.args.truncate(fork.args as usize);
             self.chosen.truncate(fork.chosen as usize);
             self.bindings.truncate(fork.bindings as usize);
-            while self.opened.len() > fork.opened as usize {
-                match self.opened.pop() {
-                    Some((number, true)) => self.close(number),
-                    Some((number, false)) => *self.open.entry(number).or_insert(0) += 1,
-                    None => {}
-                }
-            }
-            while self.needs.len() > fork.needs as usize {
-                if let Some((need, up)) = self.needs.pop() {
-                    self.count_need(need, !up);
-                }
-            }
+            self.nesting.undo_to(fork.opened);
+            self.needs.undo_to(fork.needs);
             let saved = fork.cursors as usize..self.cursors.len();
             let count = saved.len();
             self.scratch.cursors[..count].copy_from_slice(&self.cursors[saved]);
@@ -344,7 +300,7 @@ impl DepthFirst {
             let method = methods[place];
             let program = &self.program.methods[method.index()];
             let args = &self.args[node.args as usize..];
-            if !bind_head(&program.head, &compiled, args, &mut self.scratch.bindings) {
+            if !program.bind_head(&compiled, args, &mut self.scratch.bindings) {
                 continue;
             }
             let at_hand = AtHand {
@@ -391,8 +347,8 @@ impl DepthFirst {
             cursors: self.cursors.len() as u32,
             chosen: self.chosen.len() as u32,
             bindings: self.bindings.len() as u32,
-            opened: self.opened.len() as u32,
-            needs: self.needs.len() as u32,
+            opened: self.nesting.mark(),
+            needs: self.needs.mark(),
         });
         self.cursors
             .extend_from_slice(&self.scratch.cursors[..choices]);
@@ -409,9 +365,7 @@ impl DepthFirst {
         let mut next = node.next;
         if self.program.growing[task.index()] {
             let number = self.number_of(self.current);
-            *self.open.entry(number).or_insert(0) += 1;
-            self.begun.insert(number);
-            self.opened.push((number, true));
+            self.nesting.open(number);
             let hash = self.nodes.get(next as usize).map_or(0, |next| next.hash);
             self.nodes.push(Node {
                 kind: NodeKind::Close(number),
@@ -474,17 +428,6 @@ impl DepthFirst {
         join(self.own_hash(id), self.facts.hash())
     }
 
-    /// Whether the task may be begun in the present state: within itself only so often, or the
-    /// list would grow for ever; and at first not again if it was never brought to an end. (That
-    /// may have been because it was tried within what it is now tried beside.)
-    fn may_open(&self, id: u32) -> bool {
-        let number = self.number_of(id);
-        match self.open.get(&number) {
-            Some(open) => *open <= self.nesting,
-            None => self.nesting > 0 || !self.begun.contains(number) || self.done.contains(number),
-        }
-    }
-
     /// Counts what the action or task at the node needs, from when it is on the list until it is
     /// its turn.
     fn count_needs(&mut self, id: u32, up: bool) {
@@ -494,42 +437,13 @@ impl DepthFirst {
             NodeKind::Task(task) => &self.program.task_needs[task.index()],
             NodeKind::Close(_) => return,
         };
-        let first = self.needs.len();
         for need in needs {
             let tuple = &mut self.scratch.tuple;
             tuple.clear();
             let args = &self.args[node.args as usize..];
             tuple.extend(need.args.iter().map(|term| term.value(args)));
             if let Some(place) = self.facts.table_mut(need.predicate).place_of(tuple) {
-                self.needs.push(((need.predicate, place, need.holds), up));
-            }
-        }
-        for at in first..self.needs.len() {
-            let (need, up) = self.needs[at];
-            self.count_need(need, up);
-        }
-    }
-
-    fn count_need(&mut self, need: (PredicateId, FactPlace, bool), up: bool) {
-        let count = self.needed.entry(need).or_insert(0);
-        *count = if up {
-            *count + 1
-        } else {
-            count.saturating_sub(1)
-        };
-    }
-
-    /// Whether something that is still to be done needs the fact to be so.
-    fn is_needed(&self, predicate: PredicateId, place: FactPlace, holds: bool) -> bool {
-        !self.needed.is_empty()
-            && (self.needed.get(&(predicate, place, holds))).is_some_and(|count| *count > 0)
-    }
-
-    fn close(&mut self, number: u64) {
-        if let Some(count) = self.open.get_mut(&number) {
-            *count -= 1;
-            if *count == 0 {
-                self.open.remove(&number);
+                self.needs.change((need.predicate, place, need.holds), up);
             }
         }
     }
@@ -578,7 +492,7 @@ impl DepthFirst {
         // Removals come first in the list.
         let changes = self.scratch.changes.iter().enumerate();
         for (at, (predicate, place)) in changes {
-            if self.is_needed(*predicate, *place, at < removals) {
+            if self.needs.contains((*predicate, *place, at < removals)) {
                 return false;
             }
         }
@@ -599,48 +513,9 @@ impl DepthFirst {
             + (self.args.capacity() + self.bindings.capacity()) * size_of::<ObjectId>()
             + self.cursors.capacity() * size_of::<u32>()
             + self.chosen.capacity() * size_of::<MethodId>()
-            + self.open.capacity() * size_of::<(u64, u32)>()
-            + self.opened.capacity() * size_of::<(u64, bool)>()
-            + self.needs.capacity() * size_of::<((PredicateId, FactPlace, bool), bool)>()
+            + self.nesting.bytes()
+            + self.needs.bytes()
             + self.met.bytes()
-            + self.begun.bytes()
-            + self.done.bytes()
             + self.facts.bytes()
     }
-}
-
-/// Binds the method's variables to the task's arguments; `false` if they do not fit.
-fn bind_head(
-    head: &[HeadStep],
-    compiled: &Compiled,
-    args: &[ObjectId],
-    bindings: &mut [ObjectId],
-) -> bool {
-    head.iter().zip(args).all(|(step, arg)| match step {
-        HeadStep::Bind(variable, kind) => {
-            bindings[*variable] = *arg;
-            compiled.kind(*kind).contains(*arg)
-        }
-        HeadStep::Is(term) => term.value(bindings) == *arg,
-    })
-}
-
-/// For each subtask of the top, what must be so when it begins.
-fn settled(compiled: &Compiled) -> Vec<Vec<Settled>> {
-    let methods = &compiled.task(compiled.top).methods;
-    let count = methods
-        .first()
-        .map_or(0, |top| compiled.method(*top).subtasks.len());
-    let mut settled: Vec<Vec<Settled>> = (0..count).map(|_| Vec::new()).collect();
-    for goal in &compiled.goals {
-        let from = goal.last_help.map_or(0, |last| last + 1);
-        for settled in settled.iter_mut().skip(from) {
-            settled.push(Settled {
-                holds: goal.holds,
-                predicate: goal.fact.predicate,
-                args: goal.fact.args.iter().map(|term| term.value(&[])).collect(),
-            });
-        }
-    }
-    settled
 }
