@@ -6,32 +6,107 @@
 
 use std::time::{Duration, Instant};
 
-use agent_core::planner::{NaivePlanner, Planner, Settings};
+use agent_core::planner::{AnyPlanner, Planner, PlannerKind, Settings};
 use agent_core::protocol::{Happening, Input, Urgency};
 use intermezzo_tests::{Ground, Rig, door_change};
 
 const SIZES: [u32; 5] = [40, 400, 4_000, 40_000, 100_000];
+const PLANNERS: [(&str, PlannerKind); 2] = [
+    ("scratch", PlannerKind::Naive),
+    ("graph", PlannerKind::Graph),
+];
+
+/// By row and planner, what was measured at each size.
+type Curve = Vec<(&'static str, [Vec<Sample>; 2])>;
 
 fn main() {
-    let sizes: Vec<u32> = match std::env::var("SIZES") {
-        Ok(text) => text
-            .split(',')
-            .filter_map(|size| size.parse().ok())
-            .collect(),
-        Err(_) => SIZES.to_vec(),
-    };
-    for size in sizes {
-        let begun = Instant::now();
-        let ground = Ground::of(size);
-        println!("{size} nodes: made ready in {:.1?}", begun.elapsed());
-        for (row, sample) in measure(&ground, || NaivePlanner::new(Settings::default())) {
-            println!(
-                "  {row:40} {:>12.1?} {:>8} expanded",
-                sample.median(),
-                sample.count
-            );
+    if let Ok(asked) = std::env::var("MEMORY_OF") {
+        return memory(&asked);
+    }
+    let asked = std::env::var("SIZES");
+    let sizes: Vec<u32> = asked.map_or_else(
+        |_| SIZES.to_vec(),
+        |text| {
+            text.split(',')
+                .filter_map(|size| size.parse().ok())
+                .collect()
+        },
+    );
+    let mut curve = Curve::new();
+    for size in &sizes {
+        let ground = Ground::of(*size);
+        for (planner, (_, kind)) in PLANNERS.into_iter().enumerate() {
+            let measured = measure(&ground, || AnyPlanner::new(kind, Settings::default()));
+            for (row, sample) in measured {
+                let place = curve.iter().position(|(known, _)| *known == row);
+                let place = place.unwrap_or_else(|| {
+                    curve.push((row, [Vec::new(), Vec::new()]));
+                    curve.len() - 1
+                });
+                curve[place].1[planner].push(sample);
+            }
+        }
+        println!("measured at {size} nodes");
+    }
+    show(&sizes, &curve);
+    for (name, _) in PLANNERS {
+        if let Some(size) = sizes.last() {
+            ask_for_memory(*size, name);
         }
     }
+}
+
+/// Times are medians; beside them the nodes expanded (of slices, how many there were).
+fn show(sizes: &[u32], curve: &Curve) {
+    print!("{:32} {:8}", "", "nodes");
+    for size in sizes {
+        print!(" {size:>20}");
+    }
+    println!();
+    for (row, by_planner) in curve {
+        for ((name, _), samples) in PLANNERS.iter().zip(by_planner) {
+            print!("{row:32} {name:8}");
+            for sample in samples {
+                print!(" {:>11.1?} {:>8}", sample.median(), sample.count);
+            }
+            println!();
+        }
+        print!("{:32} {:8}", "", "ratio");
+        for (scratch, graph) in by_planner[0].iter().zip(&by_planner[1]) {
+            let ratio = graph.median().as_secs_f64() / scratch.median().as_secs_f64();
+            print!(" {ratio:>11.3} {:>8}", "");
+        }
+        println!();
+    }
+}
+
+/// The most room that a parent takes, map included, in a process of its own.
+fn ask_for_memory(size: u32, planner: &str) {
+    let told = std::env::current_exe().and_then(|program| {
+        std::process::Command::new(program)
+            .env("MEMORY_OF", format!("{size} {planner}"))
+            .status()
+    });
+    if let Err(error) = told {
+        println!("memory was not measured: {error}");
+    }
+}
+
+fn memory(asked: &str) {
+    let (size, planner) = asked.split_once(' ').unwrap_or((asked, "graph"));
+    let kind = PLANNERS.iter().find(|(name, _)| *name == planner);
+    let kind = kind.map_or_else(PlannerKind::default, |(_, kind)| *kind);
+    let ground = Ground::of(size.parse().unwrap_or(40));
+    let mut rig = Rig::new(&ground, AnyPlanner::new(kind, Settings::default()));
+    rig.go(&ground.target, Urgency::Normal);
+    rig.emergency(&ground.nearby);
+    rig.run();
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let most = status.lines().find(|line| line.starts_with("VmHWM"));
+    println!(
+        "{size} nodes, {planner}: {}",
+        most.unwrap_or("the system does not say")
+    );
 }
 
 #[derive(Default)]
