@@ -88,6 +88,10 @@ impl Planner for TestPlanner {
         self.planner.stop();
     }
 
+    fn prepare(&mut self, problem: &Problem) {
+        self.planner.prepare(problem);
+    }
+
     fn observe(&mut self, changes: &[FactChange]) {
         self.planner.observe(changes);
         if let Some((problem, _)) = &mut self.asked {

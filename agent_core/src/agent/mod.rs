@@ -143,7 +143,9 @@ impl<P: Planner> Agent<P> {
             now: Time::ZERO,
             outputs: VecDeque::new(),
         };
-        agent.told = crate::planner::project(&agent.problem());
+        let problem = agent.problem();
+        agent.told = crate::planner::project(&problem);
+        agent.planner.prepare(&problem);
         agent
     }
 

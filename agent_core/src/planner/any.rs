@@ -63,6 +63,10 @@ impl Planner for AnyPlanner {
         self.planner_mut().stop();
     }
 
+    fn prepare(&mut self, problem: &Problem) {
+        self.planner_mut().prepare(problem);
+    }
+
     fn observe(&mut self, changes: &[FactChange]) {
         self.planner_mut().observe(changes);
     }
