@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use agent_core::model::FactChange;
 use agent_core::planner::{Agenda, AnyPlanner, Outcome, Planner, PlannerKind, Problem, Settings};
+use agent_core::protocol::GoalId;
 
 /// Which planner an agent under test has.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -97,5 +98,13 @@ impl Planner for TestPlanner {
         if let Some((problem, _)) = &mut self.asked {
             Arc::make_mut(&mut problem.belief).apply_all(changes);
         }
+    }
+
+    fn keep(&mut self, goal: &GoalId, agendas: &[Agenda]) {
+        self.planner.keep(goal, agendas);
+    }
+
+    fn release(&mut self, goal: &GoalId) {
+        self.planner.release(goal);
     }
 }

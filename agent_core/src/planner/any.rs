@@ -2,6 +2,7 @@
 
 use super::{Agenda, GraphPlanner, NaivePlanner, Outcome, Planner, Problem, Settings};
 use crate::model::FactChange;
+use crate::protocol::GoalId;
 
 /// The planners that there are.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -69,5 +70,13 @@ impl Planner for AnyPlanner {
 
     fn observe(&mut self, changes: &[FactChange]) {
         self.planner_mut().observe(changes);
+    }
+
+    fn keep(&mut self, goal: &GoalId, agendas: &[Agenda]) {
+        self.planner_mut().keep(goal, agendas);
+    }
+
+    fn release(&mut self, goal: &GoalId) {
+        self.planner_mut().release(goal);
     }
 }

@@ -126,10 +126,6 @@ pub trait Planner {
     /// Gives up what was begun.
     fn stop(&mut self);
 
-    /// Takes in what can be known before there is anything to do, so that the first goal need not
-    /// wait for it: a large map.
-    fn prepare(&mut self, _problem: &Problem) {}
-
     /// The belief has changed, in this order. Whoever tells a planner of every change gets
     /// [`begin`](Self::begin) for the price of what has changed; a planner that was not told finds
     /// out by comparing, which takes as long as the belief is large. Planning that is under way

@@ -386,10 +386,6 @@ impl Planner for GraphPlanner {
         self.kept.remove(goal);
     }
 
-    fn prepare(&mut self, problem: &Problem) {
-        self.fetch(problem);
-    }
-
     fn observe(&mut self, changes: &[FactChange]) {
         for graph in &mut self.graphs {
             let mut touched = Touched::default();
