@@ -266,7 +266,7 @@ impl Maker<'_> {
         })
     }
 
-    fn change(&mut self, scope: &[Parameter]) -> Option<Change> {
+    fn change(&mut self, scope: &[Parameter], adds: bool) -> Option<Change> {
         let mut over = Vec::new();
         let mut inner = scope.to_vec();
         if self.random.chance(25) {
@@ -279,18 +279,21 @@ impl Maker<'_> {
         };
         let mut fact = self.fact_about(&inner)?;
         // Where the robot is, moving alone decides, most of the time.
-        if fact.name == "at" && (self.one_place || self.random.chance(90)) {
+        if fact.name == "at" && self.random.chance(if adds { 90 } else { 30 }) {
             fact = self.fact_about(&inner)?;
-            if fact.name == "at" && self.one_place {
-                return None;
-            }
+        }
+        // It may be nowhere, but not at two places.
+        if fact.name == "at" && adds && self.one_place {
+            return None;
         }
         Some(Change { over, when, fact })
     }
 
-    fn changes(&mut self, scope: &[Parameter], most: usize) -> Vec<Change> {
+    fn changes(&mut self, scope: &[Parameter], most: usize, adds: bool) -> Vec<Change> {
         let count = self.random.between(0, most);
-        (0..count).filter_map(|_| self.change(scope)).collect()
+        (0..count)
+            .filter_map(|_| self.change(scope, adds))
+            .collect()
     }
 
     fn operator(&mut self, number: usize) {
@@ -308,7 +311,10 @@ impl Maker<'_> {
         let operator = Operator {
             name: name.clone(),
             precondition: self.condition(&parameters, 2),
-            effect: effect(self.changes(&parameters, 2), self.changes(&parameters, 2)),
+            effect: effect(
+                self.changes(&parameters, 2, false),
+                self.changes(&parameters, 2, true),
+            ),
             cost,
             parameters: parameters.clone(),
         };
@@ -330,7 +336,10 @@ impl Maker<'_> {
             self.domain.operators.insert(resume.clone(), resuming);
             let all: Vec<usize> = (0..count).collect();
             model.suspension = Some(Suspension {
-                effect: effect(self.changes(&parameters, 1), self.changes(&parameters, 1)),
+                effect: effect(
+                    self.changes(&parameters, 1, false),
+                    self.changes(&parameters, 1, true),
+                ),
                 resume: pattern(resume.as_str(), &all),
                 rollback: None,
                 reach: None,
