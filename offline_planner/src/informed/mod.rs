@@ -4,6 +4,8 @@ mod anytime;
 mod greedy;
 mod progress;
 mod store;
+#[cfg(test)]
+mod tests;
 
 use agent_core::model::Cost;
 
