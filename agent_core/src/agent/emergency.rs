@@ -66,6 +66,7 @@ impl<P: Planner> Agent<P> {
     fn push(&mut self, intention: Intention, why: &str) {
         let goal = intention.goal.id.clone();
         let action = intention.records.last().map(|r| r.step.purpose().clone());
+        self.planner.keep(&intention.goal.id, &intention.agendas);
         self.stack.push(intention, ResumedBy::Agent);
         let why = why.to_owned();
         self.emit(Some(&goal), Happening::GoalSuspended { why, action });

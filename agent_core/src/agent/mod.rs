@@ -242,6 +242,7 @@ impl<P: Planner> Agent<P> {
 
     /// What superiors and users hear of a goal that has ended.
     fn remember(&mut self, intention: &Intention, outcome: Report) {
+        self.planner.release(&intention.goal.id);
         if self.ended.len() == ENDED_GOALS {
             self.ended.pop_front();
         }

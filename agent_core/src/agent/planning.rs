@@ -11,6 +11,7 @@ impl<P: Planner> Agent<P> {
         let problem = self.problem();
         if let Some(running) = &mut self.running {
             running.phase = Phase::Planning;
+            self.planner.release(&running.intention.goal.id);
             self.planner.begin(problem, &running.intention.agendas);
         }
     }

@@ -135,7 +135,9 @@ impl<P: Planner> Agent<P> {
                 .records
                 .last()
                 .map(|r| r.step.purpose().clone());
-            self.stack.push(running.intention, ResumedBy::Superior);
+            let intention = running.intention;
+            self.planner.keep(&intention.goal.id, &intention.agendas);
+            self.stack.push(intention, ResumedBy::Superior);
             let why = format!("{superior} wants it suspended");
             self.emit(Some(&goal), Happening::GoalSuspended { why, action });
         }
