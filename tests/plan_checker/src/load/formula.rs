@@ -118,10 +118,10 @@ impl Loader {
     ) -> Result<Formula, Fault> {
         let items = formula.expect_list("a condition")?;
         let Some(head) = formula.head() else {
-            return if items.is_empty() && truth {
-                Ok(Formula::And(Vec::new()))
-            } else {
-                Err(formula.fault("expected a condition"))
+            return match (items.is_empty(), truth) {
+                (true, true) => Ok(Formula::And(Vec::new())),
+                (true, false) => Ok(Formula::Or(Vec::new())),
+                (false, _) => Err(formula.fault("expected a condition")),
             };
         };
         match (head, &items[1..]) {

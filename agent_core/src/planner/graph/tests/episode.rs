@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::domains::{Scene, scene};
+use super::judged::judge;
 use super::random::Random;
 use crate::agent::{Goal, Intention, Record};
 use crate::model::{Action, Belief, ExecutionModel, Fact, FactChange, Map};
@@ -25,6 +26,8 @@ pub(super) struct Tally {
     pub plans: u64,
     pub proved_none: u64,
     pub unproved: u64,
+    /// Plans that were put before the judge.
+    pub judged: u64,
     pub resumed: u64,
     pub expanded: u64,
     pub expanded_from_scratch: u64,
@@ -147,6 +150,13 @@ impl Episode {
             }
         };
         self.compare(&problem, &expected, &found);
+        if self.random.chance(1) {
+            for plan in &found.plans {
+                let verdict = judge(&problem, &agendas, plan);
+                assert_eq!(verdict, Ok(()), "{}", self.place());
+                tally.judged += 1;
+            }
+        }
         if self.random.chance(10) {
             let verdict = self.planner.check();
             assert_eq!(verdict, Ok(()), "{}", self.place());

@@ -5,6 +5,7 @@
 
 mod domains;
 mod episode;
+mod judged;
 mod random;
 
 use episode::{Episode, Tally};
@@ -38,6 +39,7 @@ fn what_is_kept_is_as_good_as_planning_from_scratch() {
     eprintln!("{tally:?}");
     // The histories are worth something only if most goals can be reached and some cannot.
     assert!(10 * tally.plans > 3 * tally.replans, "{tally:?}");
+    assert!(200 * tally.judged > tally.plans, "{tally:?}");
     assert!(50 * tally.proved_none > tally.replans, "{tally:?}");
 }
 
