@@ -78,6 +78,7 @@ impl Graph {
     }
 
     fn give_up(&mut self, node: u32) {
+        self.count_out(node);
         self.connect(node, Vec::new());
         self.depend(node, Vec::new());
         self.wanted.remove(&node);

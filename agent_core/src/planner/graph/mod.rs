@@ -35,7 +35,7 @@ use alternatives::Alternatives;
 use dive::Dive;
 use intern::NONE;
 use key::{Key, Touched};
-use nodes::{Graph, INFINITE, Work};
+use nodes::{Graph, INFINITE, LEAST_TO_BEGIN_ANEW, Work};
 use replay::Replay;
 use search::{Search, Step, walk};
 use world::World;
@@ -74,6 +74,8 @@ pub struct GraphPlanner {
     /// Whether facts of which at most one holds are one variable.
     merges: bool,
     expansions_before_diving: u64,
+    /// With fewer nodes to be looked at again, what is known is never given up for that.
+    least_to_begin_anew: usize,
 }
 
 /// What is being planned for.
@@ -119,6 +121,7 @@ impl GraphPlanner {
             kept: BTreeMap::new(),
             merges: true,
             expansions_before_diving: EXPANSIONS_BEFORE_DIVING,
+            least_to_begin_anew: LEAST_TO_BEGIN_ANEW,
         }
     }
 
@@ -146,7 +149,8 @@ impl GraphPlanner {
                     false => Vec::new(),
                 };
                 let world = World::new(problem, groups);
-                self.graphs.push(Graph::new(world));
+                self.graphs
+                    .push(Graph::new(world, self.least_to_begin_anew));
             }
         }
         let Some(graph) = self.graphs.last_mut() else {
@@ -160,7 +164,7 @@ impl GraphPlanner {
         let forbidden = forbidden.into_iter().map(Key::Action);
         touched.keys.extend(forbidden.map(|key| (key, NONE)));
         graph.touched(&touched);
-        graph.begin_anew_if_most_is_dirty();
+        graph.begin_anew_if_much_is_dirty();
     }
 
     fn go_on(&mut self, mut budget: u64) -> Option<Outcome> {
@@ -174,6 +178,7 @@ impl GraphPlanner {
             if budget == 0 {
                 return None;
             }
+            graph.sweep();
             match &mut thinking.stage {
                 Stage::Settle => {
                     if graph.reevaluate_one() {

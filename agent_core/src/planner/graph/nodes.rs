@@ -12,6 +12,13 @@ use super::world::World;
 /// No way.
 pub(super) const INFINITE: u64 = u64::MAX;
 
+/// If so many expanded nodes are to be looked at again …
+pub(super) const LEAST_TO_BEGIN_ANEW: usize = 24;
+/// … and they are more than one in so many of those that there are, it is begun anew.
+const BEGIN_ANEW_PART: usize = 2;
+/// So many forgotten nodes, and places where nodes were noted, are given back at a time.
+const SWEPT: usize = 16;
+
 /// One way on from a node: a decomposition of its first task, or its first action.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(super) struct Edge {
@@ -108,10 +115,18 @@ pub(super) struct Graph {
     /// Counts what makes a search that is under way worthless.
     pub upset: u64,
     pub live_after_collection: usize,
+    /// How many nodes are expanded, and how many of those are dirty.
+    expanded: usize,
+    dirty_expanded: usize,
+    /// With fewer to be looked at again, it is never begun anew.
+    least_to_begin_anew: usize,
+    /// What was forgotten at once, and is given back bit by bit.
+    old_nodes: Vec<Node>,
+    old_subscriptions: Vec<Vec<Subscription>>,
 }
 
 impl Graph {
-    pub fn new(world: World) -> Self {
+    pub fn new(world: World, least_to_begin_anew: usize) -> Self {
         Self {
             world,
             nodes: Vec::new(),
@@ -127,22 +142,35 @@ impl Graph {
             work: Work::default(),
             upset: 0,
             live_after_collection: 0,
+            expanded: 0,
+            dirty_expanded: 0,
+            least_to_begin_anew,
+            old_nodes: Vec::new(),
+            old_subscriptions: Vec::new(),
         }
     }
 
-    /// Forgets all nodes.
+    /// Forgets all nodes. What they took is given back later, by [`sweep`](Self::sweep).
     pub fn clear(&mut self) {
-        self.nodes.clear();
-        self.free.clear();
-        self.table.clear();
-        self.keys.clear();
-        self.subscriptions.clear();
-        self.queue.clear();
-        self.dirty.clear();
-        self.wanted.clear();
+        append(&mut self.old_nodes, &mut self.nodes);
+        append(&mut self.old_subscriptions, &mut self.subscriptions);
+        self.free = Vec::new();
+        self.table = Map::default();
+        self.keys = Map::default();
+        self.queue = BinaryHeap::new();
+        self.dirty = VecDeque::new();
+        self.wanted = Map::default();
         self.shapes = Slices::default();
-        self.shapes_of.clear();
+        self.shapes_of = Map::default();
+        self.expanded = 0;
+        self.dirty_expanded = 0;
         self.upset += 1;
+    }
+
+    /// Gives back some of what was forgotten: more than one step of planning can add.
+    pub fn sweep(&mut self) {
+        truncate_by(&mut self.old_nodes, SWEPT);
+        truncate_by(&mut self.old_subscriptions, SWEPT);
     }
 
     /// How many nodes there are.
@@ -167,16 +195,21 @@ impl Graph {
                 let node = &mut self.nodes[subscription.node as usize];
                 if !node.dirty && !self.world.shadows(node.delta, *variable) {
                     node.dirty = true;
+                    self.dirty_expanded += usize::from(node.expanded);
                     self.dirty.push_back(subscription.node);
                 }
             }
         }
     }
 
-    /// If more is to be looked at again than not, it is cheaper to begin anew.
-    pub fn begin_anew_if_most_is_dirty(&mut self) {
-        if self.dirty.len() > 1000 && 2 * self.dirty.len() > self.live() {
+    /// If much of what was found out has to be looked at again, it is cheaper to begin anew: then
+    /// only that is looked at which the search comes to.
+    pub fn begin_anew_if_much_is_dirty(&mut self) {
+        if self.dirty_expanded >= self.least_to_begin_anew
+            && BEGIN_ANEW_PART * self.dirty_expanded > self.expanded
+        {
             self.clear();
+            self.world.forget_lists();
         }
     }
 
@@ -190,7 +223,10 @@ impl Graph {
             }
             self.work.reevaluated += 1;
             match known.expanded {
-                true => self.evaluate(node),
+                true => {
+                    self.dirty_expanded -= 1;
+                    self.evaluate(node);
+                }
                 false => self.evaluate_leaf(node),
             }
             self.touch(node);
@@ -255,7 +291,10 @@ impl Graph {
 
     /// All ways on from a node, as they are now.
     pub fn expand(&mut self, node: u32) {
-        self.nodes[node as usize].expanded = true;
+        let known = &mut self.nodes[node as usize];
+        known.expanded = true;
+        self.expanded += 1;
+        self.dirty_expanded += usize::from(known.dirty);
         self.work.expanded += 1;
         self.evaluate(node);
         self.touch(node);
@@ -279,6 +318,13 @@ impl Graph {
             }
         }
         self.connect(node, edges);
+    }
+
+    /// A node is given up.
+    pub fn count_out(&mut self, node: u32) {
+        let known = &self.nodes[node as usize];
+        self.expanded -= usize::from(known.expanded);
+        self.dirty_expanded -= usize::from(known.expanded && known.dirty);
     }
 
     /// These are the edges of a node from now on.
@@ -414,5 +460,20 @@ impl Graph {
         let out = &self.nodes[node as usize].out;
         let through = |edge: &&Edge| edge.weight().saturating_add(self.nodes[edge.to as usize].v);
         out.iter().min_by_key(through)
+    }
+}
+
+/// Moves what is in `new` behind `old`, which costs nothing if `old` is empty.
+fn append<T>(old: &mut Vec<T>, new: &mut Vec<T>) {
+    match old.is_empty() {
+        true => *old = std::mem::take(new),
+        false => old.append(new),
+    }
+}
+
+fn truncate_by<T>(list: &mut Vec<T>, count: usize) {
+    list.truncate(list.len().saturating_sub(count));
+    if list.is_empty() {
+        *list = Vec::new();
     }
 }

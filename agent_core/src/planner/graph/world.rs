@@ -471,6 +471,13 @@ impl World {
         })
     }
 
+    /// Forgets all lists and deltas: there are no nodes.
+    pub fn forget_lists(&mut self) {
+        self.lists.compact(std::iter::empty());
+        self.deltas = Slices::default();
+        self.deltas.intern(&[]);
+    }
+
     /// The delta of these variables as they are now.
     pub fn realised(&self, variables: &[u32]) -> Option<u32> {
         let pairs = variables.iter().flat_map(|v| [*v, self.value(*v)]);

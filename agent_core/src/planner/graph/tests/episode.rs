@@ -61,6 +61,9 @@ impl Episode {
         let scene = scene(&mut random);
         let mut planner = GraphPlanner::new(Settings::default());
         planner.merges = random.chance(80);
+        if random.chance(20) {
+            planner.least_to_begin_anew = random.between(1, 10);
+        }
         let mut other_map = Map::clone(&scene.map);
         let facts: Vec<Fact> = other_map.facts.facts().cloned().collect();
         if let Some(fact) = facts.first() {

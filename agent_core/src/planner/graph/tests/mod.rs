@@ -5,6 +5,7 @@
 
 mod domains;
 mod episode;
+mod groups;
 mod judged;
 mod random;
 
