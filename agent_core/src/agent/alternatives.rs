@@ -3,11 +3,15 @@
 use super::{Agent, Intention};
 use crate::model::{Action, Cost};
 use crate::planner::{
-    Considered, Item, Plan, Planner, Reliance, Settings, WhatIf, consider, hangs_on, simulate,
+    Considered, Item, Plan, Planner, Reliance, Settings, WhatIf, consider, hangs_on, if_mended,
+    is_detour, simulate,
 };
 
-/// So many slices of planning an answer may take.
+/// So many slices of planning an answer may take where the map is small.
 const SLICES: u64 = 3;
+/// A map with so many objects is small. On a larger one each expansion takes longer and more of them
+/// find less: as many times fewer are made as the root of how many times it is larger.
+const SMALL: usize = 25;
 
 /// Where a goal is.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -83,12 +87,14 @@ impl<P: Planner> Agent<P> {
     /// The alternatives for every goal: the running one first, then the suspended ones, innermost
     /// first, then those that wait. Changes nothing.
     ///
-    /// What is not kept is looked for by planning from scratch in the present belief, with no more
-    /// expansions for all goals together than a few slices of planning have (decision 9), so that an
-    /// agent that is asked is still an agent that listens.
+    /// Plans that are kept and what the planner knows besides are judged in the present belief. Only
+    /// then it is planned from scratch, with no more expansions for all goals together than take a
+    /// few milliseconds, so that an agent that is asked is still an agent that listens (decision 9).
+    /// On large maps that is seldom enough, and the answer says that not all was looked at.
     pub fn alternatives(&self) -> Vec<Alternatives<'_>> {
         let slice = self.configuration.policy.expansions_per_slice;
-        let mut budget = slice.saturating_mul(SLICES);
+        let larger = (self.map.objects.len() / SMALL).isqrt().max(1) as u64;
+        let mut budget = slice.saturating_mul(SLICES) / larger;
         let stacked = self.stack.entries().iter().rev();
         let aside = self.aside.goals().iter();
         let waiting = self.waiting.intentions().iter();
@@ -134,6 +140,11 @@ impl<P: Planner> Agent<P> {
         let mut plans: Vec<Alternative> = (intention.plans.iter())
             .map(|plan| evaluate(plan.clone(), true))
             .collect();
+        if intention.cancelled.is_none() {
+            for plan in self.planner.known(&problem, &intention.agendas) {
+                add(&mut plans, evaluate(plan, false));
+            }
+        }
         let valid = plans.iter().filter(|plan| plan.broken.is_none());
         let best = valid.map(|plan| plan.cost).min();
         // Plans that are not decomposed to the end cost what is estimated: nothing is told from that.
@@ -159,11 +170,22 @@ impl<P: Planner> Agent<P> {
         };
         *budget = budget.saturating_sub(expanded);
         for plan in found {
-            let same = |known: &Alternative| known.plan.purposes().eq(plan.purposes());
-            if !plans.iter().any(same) {
-                plans.push(evaluate(plan, false));
-            }
+            add(&mut plans, evaluate(plan, false));
         }
+        let valid = plans.iter().filter(|plan| plan.broken.is_none());
+        let best = valid.map(|plan| plan.cost).min();
+        let broken = plans.iter().filter(|plan| plan.broken.is_some());
+        let what_if = what_if.or_else(|| {
+            let mended = broken.filter_map(|it| if_mended(&problem, &it.plan, best));
+            let mended = mended.filter(|_| in_full && intention.cancelled.is_none());
+            mended.min_by_key(|what_if| what_if.plan.cost)
+        });
+        let mut index = 0;
+        plans.retain(|plan| {
+            index += 1;
+            // Whatever it is, the first is the one that is followed.
+            index == 1 || !is_detour(&problem, &plan.plan)
+        });
         if let Some((_, others)) = plans.split_first_mut() {
             others.sort_by_key(|plan| (plan.broken.is_some(), plan.cost));
         }
@@ -176,6 +198,14 @@ impl<P: Planner> Agent<P> {
             what_if,
             complete,
         }
+    }
+}
+
+/// Adds a plan that was found, if it is another one and holds.
+fn add(plans: &mut Vec<Alternative>, found: Alternative) {
+    let same = |known: &Alternative| known.plan.purposes().eq(found.plan.purposes());
+    if found.broken.is_none() && !plans.iter().any(same) {
+        plans.push(found);
     }
 }
 

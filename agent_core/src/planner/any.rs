@@ -1,6 +1,6 @@
 //! The planner that was chosen when the program began.
 
-use super::{Agenda, GraphPlanner, NaivePlanner, Outcome, Planner, Problem, Settings};
+use super::{Agenda, GraphPlanner, NaivePlanner, Outcome, Plan, Planner, Problem, Settings};
 use crate::model::FactChange;
 use crate::protocol::GoalId;
 
@@ -70,6 +70,10 @@ impl Planner for AnyPlanner {
 
     fn observe(&mut self, changes: &[FactChange]) {
         self.planner_mut().observe(changes);
+    }
+
+    fn known(&self, problem: &Problem, agendas: &[Agenda]) -> Vec<Plan> {
+        self.planner().known(problem, agendas)
     }
 
     fn keep(&mut self, goal: &GoalId, agendas: &[Agenda]) {

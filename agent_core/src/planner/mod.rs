@@ -3,6 +3,7 @@
 mod any;
 mod cost;
 mod decompose;
+mod detour;
 mod estimate;
 mod graph;
 mod hangs_on;
@@ -23,6 +24,7 @@ mod typing;
 mod what_if;
 
 pub use any::{AnyPlanner, PlannerKind};
+pub use detour::is_detour;
 pub use graph::GraphPlanner;
 pub use hangs_on::{Reliance, hangs_on};
 pub use naive::NaivePlanner;
@@ -33,7 +35,7 @@ pub use revise::{
     advance, broken_protection, effect_of, effect_of_suspension, instance, number_of, project,
     simulate,
 };
-pub use what_if::{Considered, WhatIf, consider};
+pub use what_if::{Considered, WhatIf, consider, if_mended};
 
 use std::collections::BTreeSet;
 
@@ -131,6 +133,12 @@ pub trait Planner {
     /// out by comparing, which takes as long as the belief is large. Planning that is under way
     /// goes on from the new belief, or begins anew.
     fn observe(&mut self, _changes: &[FactChange]) {}
+
+    /// Plans for these agendas that are at hand without any planning, cheapest first. They may be
+    /// out of date: whoever asks finds out whether they hold. Changes nothing.
+    fn known(&self, _problem: &Problem, _agendas: &[Agenda]) -> Vec<Plan> {
+        Vec::new()
+    }
 
     /// A goal is set aside and will be planned for again, by these agendas: what is known of it is
     /// worth keeping. Whoever does not say so may lose it after a while, and nothing else.

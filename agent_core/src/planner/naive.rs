@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 use std::sync::Arc;
 
 use super::decompose::successors;
+use super::detour::decisive;
 use super::estimate::estimate;
 use super::network::TaskList;
 use super::plan::{Agenda, Plan, Step};
@@ -93,16 +94,8 @@ struct Search {
 
 impl Search {
     fn new(problem: Problem, agendas: &[Agenda]) -> Self {
-        let methods = problem.domain.methods.iter().map(|m| &m.precondition);
-        let operators = problem.domain.operators.values().map(|o| &o.precondition);
-        let mut decisive = BTreeSet::new();
-        for clause in methods.chain(operators).flatten() {
-            clause.each_pattern(&mut |pattern| {
-                decisive.insert(pattern.name.clone());
-            });
-        }
         let mut search = Self {
-            decisive,
+            decisive: decisive(&problem.domain),
             problem,
             nodes: Vec::new(),
             frontier: BinaryHeap::new(),

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::hangs_on::{hangs_on, with_changes};
-use super::{Agenda, NaivePlanner, Outcome, Plan, Planner, Problem, Settings};
+use super::{Agenda, NaivePlanner, Outcome, Plan, Planner, Problem, Settings, simulate};
 use crate::model::{Cost, Fact, FactChange};
 
 /// A plan that would be followed if some facts were otherwise.
@@ -98,6 +98,30 @@ pub fn consider(
         plan,
     });
     considered
+}
+
+/// A plan that does not hold and would be followed if facts that can change without the agent were
+/// as it has them: without any planning, so there may be better ones.
+pub fn if_mended(problem: &Problem, plan: &Plan, best: Option<Cost>) -> Option<WhatIf> {
+    let missing = hangs_on(problem, &plan.steps, false).into_iter();
+    let missing: Vec<_> = missing.filter(|reliance| !reliance.given).collect();
+    if missing.is_empty() || !missing.iter().all(|reliance| reliance.changes_alone) {
+        return None;
+    }
+    let changes = missing.iter().map(|it| (&it.fact, it.wanted));
+    let cost = simulate(&with_changes(problem, changes), &plan.steps, false).ok()?;
+    best.is_none_or(|best| cost < best).then(|| WhatIf {
+        changes: (missing.into_iter())
+            .map(|reliance| match reliance.wanted {
+                true => FactChange::Add(reliance.fact),
+                false => FactChange::Remove(reliance.fact),
+            })
+            .collect(),
+        plan: Plan {
+            cost,
+            ..plan.clone()
+        },
+    })
 }
 
 /// What planning from scratch finds; `None` if so many expansions are not enough.

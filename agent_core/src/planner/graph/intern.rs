@@ -78,6 +78,11 @@ impl Names {
         number
     }
 
+    /// The number of a name, if it has one.
+    pub fn find(&self, name: &Symbol) -> Option<u32> {
+        self.numbers.get(name).copied()
+    }
+
     /// The name with a number.
     pub fn name(&self, number: u32) -> &Symbol {
         &self.names[number as usize]

@@ -103,6 +103,15 @@ impl Lists {
         list
     }
 
+    /// The list of an item, whose atom has this number, and then `rest`, if it has a number.
+    pub fn find(&self, item: &Item, atom: u32, rest: u32) -> Option<u32> {
+        let entry = match item {
+            Item::Task(_) => self.tasks.get(&atom),
+            _ => self.others.get(item),
+        };
+        self.table.get(&(*entry?, rest)).copied()
+    }
+
     /// The first entry and what follows; `None` if nothing is left to do.
     pub fn first(&self, list: u32) -> Option<(u32, u32)> {
         let cell = &self.cells[list as usize];

@@ -99,3 +99,42 @@ fn no_more_is_expanded_than_is_allowed() {
     let (plans, what_if, complete) = considered(&[&["open", "long"]], 1);
     assert_eq!((plans.len(), what_if, complete), (0, None, false));
 }
+
+#[test]
+fn what_a_broken_plan_lacks_is_told_without_planning() {
+    let agenda = Agenda {
+        tasks: TaskList::of_tasks([Atom::new("go", [])].into_iter()),
+        origin: Origin::Goal,
+    };
+    let open = house(&[&["open", "short"], &["open", "long"]]);
+    let plans = consider(&open, &[agenda], Settings::default(), None, 100).plans;
+    let closed = house(&[&["open", "long"]]);
+    let mended = |best: f64| if_mended(&closed, &plans[0], Some(Cost::from_units(best)));
+    let what_if = mended(5.0).expect("the short way is the better one");
+    let changes: Vec<String> = what_if.changes.iter().map(ToString::to_string).collect();
+    assert_eq!(changes, ["(open short)"]);
+    assert_eq!(what_if.plan.cost.units(), 1.0);
+    assert_eq!(mended(1.0), None, "it would be no better");
+    assert_eq!(if_mended(&open, &plans[0], None), None, "it lacks nothing");
+}
+
+#[test]
+fn what_the_graph_knows_is_at_hand_as_long_as_nothing_changes() {
+    let agendas = [Agenda {
+        tasks: TaskList::of_tasks([Atom::new("go", [])].into_iter()),
+        origin: Origin::Goal,
+    }];
+    let house = house(&[&["open", "short"], &["open", "long"]]);
+    let mut planner = crate::planner::GraphPlanner::new(Settings::default());
+    assert_eq!(planner.known(&house, &agendas), []);
+    planner.begin(house.clone(), &agendas);
+    let outcome = planner.think(100).expect("the house is small");
+    assert_eq!(planner.known(&house, &agendas), outcome.plans[..1]);
+    let mut belief = Belief::clone(&house.belief);
+    belief.apply(&FactChange::Remove(Fact::new("open", ["short"])));
+    let closed = Problem {
+        belief: Arc::new(belief),
+        ..house
+    };
+    assert_eq!(planner.known(&closed, &agendas), [], "it was not told");
+}
