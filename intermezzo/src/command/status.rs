@@ -249,6 +249,9 @@ fn belief(text: &mut String, belief: &Value) {
     );
 }
 
+/// So many closed doors are named; `--json` names all.
+const CLOSED_DOORS: usize = 12;
+
 fn world(text: &mut String, views: &Value) {
     let status = &views["status"];
     let _ = writeln!(
@@ -267,7 +270,12 @@ fn world(text: &mut String, views: &Value) {
         .collect();
     let closed = match closed.as_slice() {
         [] => "no door is closed".to_owned(),
-        doors => format!("closed: {}", doors.join(", ")),
+        doors => match doors.split_at_checked(CLOSED_DOORS) {
+            Some((first, rest)) if !rest.is_empty() => {
+                format!("closed: {} and {} more", first.join(", "), rest.len())
+            }
+            _ => format!("closed: {}", doors.join(", ")),
+        },
     };
     let _ = writeln!(text, "           {DIM}{closed}{DIM:#}");
 }
