@@ -12,6 +12,18 @@ use crate::sexpr::{Sexpr, read};
 use formula::Scope;
 use types::{Types, typed};
 
+/// What is said of tasks and their order, in a method as in the problem.
+const NETWORK: &[&str] = &[
+    ":parameters",
+    ":subtasks",
+    ":tasks",
+    ":ordered-subtasks",
+    ":ordered-tasks",
+    ":ordering",
+    ":order",
+    ":constraints",
+];
+
 /// More variables than anybody writes; the search for values recurs once for each.
 const MOST_VARIABLES: usize = 500;
 
@@ -201,18 +213,7 @@ impl Loader {
     fn method(&mut self, section: &Sexpr, items: &[Sexpr]) -> Result<Method, Fault> {
         let name = items.get(1).and_then(Sexpr::word);
         let name = name.ok_or_else(|| section.fault("a method without a name"))?;
-        let known = [
-            ":parameters",
-            ":task",
-            ":precondition",
-            ":subtasks",
-            ":tasks",
-            ":ordered-subtasks",
-            ":ordered-tasks",
-            ":ordering",
-            ":order",
-            ":constraints",
-        ];
+        let known = [&[":task", ":precondition"], NETWORK].concat();
         let parts = Parts::new(&items[2..], &known)?;
         let scope = Scope::of(&mut self.types, parts.get(":parameters"))?;
         let head = parts.get(":task");
@@ -248,17 +249,7 @@ impl Loader {
             match section.head() {
                 Some(":domain" | ":objects" | ":requirements" | ":metric") => (),
                 Some(":htn") => {
-                    let known = [
-                        ":parameters",
-                        ":subtasks",
-                        ":tasks",
-                        ":ordered-subtasks",
-                        ":ordered-tasks",
-                        ":ordering",
-                        ":order",
-                        ":constraints",
-                    ];
-                    let parts = Parts::new(&items[1..], &known)?;
+                    let parts = Parts::new(&items[1..], NETWORK)?;
                     let scope = Scope::of(&mut self.types, parts.get(":parameters"))?;
                     root = Some(self.network("the problem", None, scope, &parts)?);
                 }
