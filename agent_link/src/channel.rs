@@ -58,7 +58,9 @@ impl<T: Clone + Serialize + Send + Sync + 'static> Sender<T> {
         let work = Work {
             session: session.clone(),
             key,
-            outbox: Outbox::new(from, epoch),
+            from,
+            epoch,
+            outbox: Outbox::default(),
             incoming,
         };
         let task = tokio::spawn(async move {
@@ -95,6 +97,8 @@ impl<T> Drop for Sender<T> {
 struct Work<T> {
     session: Session,
     key: String,
+    from: Symbol,
+    epoch: u64,
     outbox: Outbox<T>,
     incoming: mpsc::UnboundedReceiver<T>,
 }
@@ -102,15 +106,22 @@ struct Work<T> {
 impl<T: Clone + Serialize> Work<T> {
     /// Gets the oldest message through. `None` once nothing more can come.
     async fn next_delivery(&mut self) -> Option<Delivery<T>> {
-        if self.outbox.front().is_none() {
+        if self.outbox.waiting().next().is_none() {
             self.outbox.push(self.incoming.recv().await?);
         }
         while let Ok(body) = self.incoming.try_recv() {
             self.outbox.push(body);
         }
-        let envelope = self.outbox.front()?;
-        let seq = envelope.seq;
-        let text = match wire::write(&Message::from(envelope)) {
+        let (seq, body) = self.outbox.waiting().next()?;
+        let envelope = Envelope {
+            from: self.from.clone(),
+            line: self.epoch,
+            epoch: self.epoch,
+            seq,
+            settled: seq - 1,
+            body: body.clone(),
+        };
+        let text = match wire::write(&Message::from(&envelope)) {
             Ok(text) => text,
             Err(error) => {
                 // The wire types have no value that cannot be written.
@@ -126,7 +137,7 @@ impl<T: Clone + Serialize> Work<T> {
                     if attempts >= ATTEMPTS_BEFORE_WARNING {
                         tracing::info!("{} answers again", self.key);
                     }
-                    let body = self.outbox.acknowledged(seq)?;
+                    let body = self.outbox.acknowledge(seq)?;
                     return Some(Delivery::Applied(body, answer.answer));
                 }
                 Ok(None) => return Some(Delivery::Superseded),
@@ -189,7 +200,7 @@ impl Received {
 /// Receives from any number of senders.
 #[derive(Default)]
 pub struct Receiver {
-    inbox: Inbox<Option<Answer>>,
+    inbox: Inbox<Answer>,
 }
 
 impl Receiver {
@@ -210,7 +221,7 @@ impl Receiver {
         let envelope = Envelope::from(message);
         let seq = envelope.seq;
         match self.inbox.receive(&envelope) {
-            Receipt::New => {}
+            Receipt::New { .. } => {}
             Receipt::Again(answer) => {
                 acknowledge(question, &Acknowledgement::applied(seq, answer));
                 return None;
@@ -226,12 +237,19 @@ impl Receiver {
             }
         }
         let Envelope {
-            from, epoch, body, ..
+            from,
+            line,
+            epoch,
+            settled,
+            body,
+            ..
         } = envelope;
         let head = Envelope {
             from,
+            line,
             epoch,
             seq,
+            settled,
             body: (),
         };
         Some((body, Received { head, question }))

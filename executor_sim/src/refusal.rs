@@ -26,6 +26,8 @@ pub(crate) fn refuse<L>(input: Input<L>, who: &str) -> Option<Reply> {
         Input::Answer { .. }
         | Input::Report { .. }
         | Input::Observation(_)
+        | Input::Neighbour { .. }
+        | Input::Reborn { .. }
         | Input::Wake
         | Input::Local(_) => None,
     }

@@ -129,6 +129,10 @@ impl Machine for SimulatedRobot {
             Input::Report { id, report } => {
                 self.controller.handle(now, Input::Report { id, report })
             }
+            Input::Neighbour { name, there } => self
+                .controller
+                .handle(now, Input::Neighbour { name, there }),
+            Input::Reborn { name } => self.controller.handle(now, Input::Reborn { name }),
             Input::Wake => self.controller.handle(now, Input::Wake),
             Input::Local(never) => match never {},
         };

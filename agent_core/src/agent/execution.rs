@@ -141,6 +141,7 @@ impl<P: Planner> Agent<P> {
                 }
                 self.failed(execution, reason, &facts);
             }
+            Report::Unknown { reason, facts } => self.failed(execution, reason, &facts),
             Report::Suspended { facts } => self.suspended(execution, &facts),
         }
     }

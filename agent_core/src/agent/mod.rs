@@ -289,7 +289,7 @@ impl<P: Planner> Machine for Agent<P> {
                 self.observed(&facts);
                 None
             }
-            Input::Wake => None,
+            Input::Neighbour { .. } | Input::Reborn { .. } | Input::Wake => None,
             Input::Local(never) => match never {},
         };
         self.watch_the_clock();

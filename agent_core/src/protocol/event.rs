@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::{ActionId, GoalId, Urgency};
-use crate::model::{Action, Cost, Fact, FactChange, Task, Time};
+use crate::model::{Action, Cost, Fact, FactChange, Symbol, Task, Time};
 
 /// Something happened.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
     /// On the world's clock.
     pub at: Time,
@@ -33,7 +33,7 @@ pub enum Resumption {
 }
 
 /// What happened. The names are those of the JSON events, in other letters.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Happening {
     /// A goal was acknowledged.
     GoalAccepted {
@@ -72,6 +72,12 @@ pub enum Happening {
     GoalSucceeded,
     /// It was given up.
     GoalFailed {
+        /// In words.
+        reason: String,
+    },
+    /// It has ended, and nobody can tell whether it was reached: something in it must not be done
+    /// twice, and whether it was done is not known (decision 11).
+    GoalUnknown {
         /// In words.
         reason: String,
     },
@@ -145,6 +151,16 @@ pub enum Happening {
         id: ActionId,
         /// What.
         action: Action,
+    },
+    /// A superior or an executor is gone: its process has died, is frozen, or cannot be reached.
+    NeighbourLost {
+        /// Who.
+        name: Symbol,
+    },
+    /// It is there again.
+    NeighbourBack {
+        /// Who.
+        name: Symbol,
     },
     /// The belief is different.
     BeliefChanged {

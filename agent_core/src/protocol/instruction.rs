@@ -82,7 +82,7 @@ pub enum Answer {
     /// `Suspend`, `Resume`, `Clear`: it has ended already, and so. Without the outcome in here, an
     /// answer that overtakes a report of success has the goal done twice.
     Finished {
-        /// [`Report::Success`] or [`Report::Failure`].
+        /// [`Report::Success`], [`Report::Failure`] or [`Report::Unknown`].
         outcome: Report,
     },
     /// Not understood or not possible; nothing has changed.
@@ -117,16 +117,37 @@ pub enum Report {
         /// them (decision 7).
         blocked_by: Vec<Fact>,
     },
-    /// The executor stands still and keeps a record to resume from.
+    /// It has ended, and nobody can tell how: its process died in between, and what it does must
+    /// not be done twice (decision 11).
+    Unknown {
+        /// In words for a person.
+        reason: String,
+        /// What is true now, at the receiver's level.
+        facts: Vec<FactChange>,
+    },
+    /// The executor stands still and keeps a record to resume from. Also without having been
+    /// asked: after a restart, or when it has lost its superior.
     Suspended {
         /// What is true now, at the receiver's level.
         facts: Vec<FactChange>,
     },
 }
 
+/// A report with what it is about, as it travels.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReportBody {
+    /// Which execution.
+    pub id: ActionId,
+    /// How it goes.
+    pub report: Report,
+}
+
 impl Report {
     /// Whether nothing more can come about this execution.
     pub fn is_end(&self) -> bool {
-        matches!(self, Self::Success { .. } | Self::Failure { .. })
+        matches!(
+            self,
+            Self::Success { .. } | Self::Failure { .. } | Self::Unknown { .. }
+        )
     }
 }

@@ -37,6 +37,21 @@ pub enum Input<L> {
     },
     /// Facts that turned out otherwise, though nobody was told to change them.
     Observation(Vec<FactChange>),
+    /// A superior or an executor has appeared or vanished. A machine whose superior is gone holds:
+    /// it stops what runs and starts nothing until the superior is back, as a robot that cannot be
+    /// interrupted must not move.
+    Neighbour {
+        /// Who.
+        name: Symbol,
+        /// Whether it is there now.
+        there: bool,
+    },
+    /// A superior or an executor has lost its memory. What it has instructed it will neither resume
+    /// nor clear; how that ended what it was told to do, nobody knows.
+    Reborn {
+        /// Who.
+        name: Symbol,
+    },
     /// The time of [`Machine::wake_at`] has come.
     Wake,
     /// From elsewhere.

@@ -10,8 +10,11 @@ use super::{Answer, VERSION};
 pub struct Message<T> {
     v: u32,
     from: String,
+    line: u64,
     epoch: u64,
     seq: u64,
+    #[serde(default)]
+    settled: u64,
     body: T,
 }
 
@@ -20,8 +23,10 @@ impl<T: Clone> From<&Envelope<T>> for Message<T> {
         Self {
             v: VERSION,
             from: envelope.from.to_string(),
+            line: envelope.line,
             epoch: envelope.epoch,
             seq: envelope.seq,
+            settled: envelope.settled,
             body: envelope.body.clone(),
         }
     }
@@ -31,8 +36,10 @@ impl<T> From<Message<T>> for Envelope<T> {
     fn from(message: Message<T>) -> Self {
         Self {
             from: message.from.into(),
+            line: message.line,
             epoch: message.epoch,
             seq: message.seq,
+            settled: message.settled,
             body: message.body,
         }
     }

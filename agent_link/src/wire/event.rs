@@ -46,6 +46,9 @@ enum What {
     GoalFailed {
         reason: String,
     },
+    GoalUnknown {
+        reason: String,
+    },
     GoalBlocked {
         blocked_by: Vec<Text<Atom>>,
     },
@@ -84,6 +87,12 @@ enum What {
     RecordCleared {
         action_id: Text<ActionId>,
         action: Text<Action>,
+    },
+    NeighbourLost {
+        name: String,
+    },
+    NeighbourBack {
+        name: String,
     },
     BeliefChanged {
         changes: Vec<Text<FactChange>>,
@@ -172,6 +181,9 @@ fn to_wire(what: &protocol::Happening) -> What {
         Core::GoalFailed { reason } => What::GoalFailed {
             reason: reason.clone(),
         },
+        Core::GoalUnknown { reason } => What::GoalUnknown {
+            reason: reason.clone(),
+        },
         Core::GoalBlocked { blocked_by } => What::GoalBlocked {
             blocked_by: to_text(blocked_by),
         },
@@ -224,6 +236,12 @@ fn to_wire(what: &protocol::Happening) -> What {
             let (action_id, action) = pair(id, action);
             What::RecordCleared { action_id, action }
         }
+        Core::NeighbourLost { name } => What::NeighbourLost {
+            name: name.to_string(),
+        },
+        Core::NeighbourBack { name } => What::NeighbourBack {
+            name: name.to_string(),
+        },
         Core::BeliefChanged { changes } => What::BeliefChanged {
             changes: changes_to_text(changes),
         },
@@ -263,6 +281,7 @@ fn from_wire(what: What) -> protocol::Happening {
         },
         What::GoalSucceeded => Core::GoalSucceeded,
         What::GoalFailed { reason } => Core::GoalFailed { reason },
+        What::GoalUnknown { reason } => Core::GoalUnknown { reason },
         What::GoalBlocked { blocked_by } => Core::GoalBlocked {
             blocked_by: from_text(blocked_by),
         },
@@ -309,6 +328,8 @@ fn from_wire(what: What) -> protocol::Happening {
             id: action_id.0,
             action: action.0,
         },
+        What::NeighbourLost { name } => Core::NeighbourLost { name: name.into() },
+        What::NeighbourBack { name } => Core::NeighbourBack { name: name.into() },
         What::BeliefChanged { changes } => Core::BeliefChanged {
             changes: from_text(changes),
         },

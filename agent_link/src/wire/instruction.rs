@@ -197,6 +197,11 @@ pub enum Report {
         #[serde(default)]
         blocked_by: Vec<Text<Atom>>,
     },
+    /// It has ended, and nobody can tell how.
+    Unknown {
+        reason: String,
+        facts: Vec<Text<FactChange>>,
+    },
     /// The executor stands still.
     Suspended { facts: Vec<Text<FactChange>> },
 }
@@ -222,6 +227,10 @@ impl From<&protocol::Report> for Report {
                 facts: changes_to_text(facts),
                 blocked_by: to_text(blocked_by),
             },
+            Core::Unknown { reason, facts } => Self::Unknown {
+                reason: reason.clone(),
+                facts: changes_to_text(facts),
+            },
             Core::Suspended { facts } => Self::Suspended {
                 facts: changes_to_text(facts),
             },
@@ -245,6 +254,10 @@ impl From<Report> for protocol::Report {
                 reason,
                 facts: from_text(facts),
                 blocked_by: from_text(blocked_by),
+            },
+            Report::Unknown { reason, facts } => Self::Unknown {
+                reason,
+                facts: from_text(facts),
             },
             Report::Suspended { facts } => Self::Suspended {
                 facts: from_text(facts),

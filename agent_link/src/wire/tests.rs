@@ -87,6 +87,7 @@ fn report() -> impl Strategy<Value = protocol::Report> {
                 blocked_by,
             }
         }),
+        (any::<String>(), changes()).prop_map(|(reason, facts)| R::Unknown { reason, facts }),
         changes().prop_map(|facts| R::Suspended { facts }),
     ]
 }
@@ -132,6 +133,9 @@ fn happening() -> impl Strategy<Value = Happening> {
         }),
         Just(H::GoalSucceeded),
         words().prop_map(|reason| H::GoalFailed { reason }),
+        words().prop_map(|reason| H::GoalUnknown { reason }),
+        atom().prop_map(|atom| H::NeighbourLost { name: atom.name }),
+        atom().prop_map(|atom| H::NeighbourBack { name: atom.name }),
         vec(atom(), 0..3).prop_map(|blocked_by| H::GoalBlocked { blocked_by }),
         (
             vec(atom(), 0..4),
@@ -170,6 +174,8 @@ fn happening() -> impl Strategy<Value = Happening> {
 fn sent<T: Serialize + DeserializeOwned>(body: T) -> T {
     let envelope = Envelope {
         from: "parent".into(),
+        line: 1,
+        settled: 0,
         epoch: 3,
         seq: 17,
         body: to_value(&body).unwrap(),

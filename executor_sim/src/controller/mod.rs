@@ -260,6 +260,7 @@ impl Controller {
         let facts = match &report {
             Report::Success { facts }
             | Report::Failure { facts, .. }
+            | Report::Unknown { facts, .. }
             | Report::Suspended { facts } => facts.clone(),
             Report::Started | Report::Progress { .. } => Vec::new(),
         };

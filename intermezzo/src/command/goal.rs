@@ -103,7 +103,9 @@ async fn end_of(mut events: Events, id: &str, as_json: bool) -> Result<Exit, Fai
         }
         match event.what {
             Happening::GoalSucceeded => return Ok(Exit::Done),
-            Happening::GoalFailed { .. } => return Ok(Exit::Failed),
+            Happening::GoalFailed { .. } | Happening::GoalUnknown { .. } => {
+                return Ok(Exit::Failed);
+            }
             _ => {}
         }
     }
@@ -130,6 +132,9 @@ fn words(event: &Event) -> Option<String> {
         }
         Happening::GoalSucceeded => format!("{GOOD}done{GOOD:#} at {at}"),
         Happening::GoalFailed { reason } => format!("{BAD}failed{BAD:#} at {at}: {reason}"),
+        Happening::GoalUnknown { reason } => {
+            format!("{BAD}not known whether it is done{BAD:#} at {at}: {reason}")
+        }
         _ => return None,
     })
 }

@@ -143,7 +143,9 @@ impl Player {
             Happening::GoalSucceeded => {
                 self.open.remove(goal);
             }
-            Happening::GoalFailed { reason } if self.open.remove(goal) => {
+            Happening::GoalFailed { reason } | Happening::GoalUnknown { reason }
+                if self.open.remove(goal) =>
+            {
                 self.failed.push(format!("goal {goal} failed: {reason}"));
             }
             _ => {}

@@ -145,6 +145,7 @@ impl ForPeople {
             }
             Happening::GoalSucceeded
             | Happening::GoalFailed { .. }
+            | Happening::GoalUnknown { .. }
             | Happening::GoalBlocked { .. } => {
                 self.stack.retain(|suspended| suspended != goal);
                 if self.running.as_ref() == Some(goal) {
@@ -208,7 +209,9 @@ impl Screen for ForPeople {
             self.ledger.note(self.zero, event);
             let bars = match &event.what {
                 // The last line of a goal stands by its bar.
-                Happening::GoalSucceeded | Happening::GoalFailed { .. }
+                Happening::GoalSucceeded
+                | Happening::GoalFailed { .. }
+                | Happening::GoalUnknown { .. }
                     if before.0.as_ref() == event.goal.as_ref() =>
                 {
                     before.1

@@ -52,6 +52,7 @@ impl Ledger {
             }
             Happening::GoalSucceeded => life.ended = format!("{at} done"),
             Happening::GoalFailed { .. } => life.ended = format!("{at} failed"),
+            Happening::GoalUnknown { .. } => life.ended = format!("{at} not known"),
             _ => {}
         }
     }

@@ -68,6 +68,17 @@ pub(super) fn of_parent(goal: &str, what: &Happening, observable: &Observable) -
         ),
         Happening::GoalSucceeded => line('✓', GOOD, format!("{goal} is done")),
         Happening::GoalFailed { reason } => line('✗', BAD, format!("{goal} has failed: {reason}")),
+        Happening::GoalUnknown { reason } => line(
+            '?',
+            BAD,
+            format!("nobody knows whether {goal} is done: {reason}"),
+        ),
+        Happening::NeighbourLost { name } => line(
+            '!',
+            BAD,
+            format!("the {name} is gone: all that needs it waits"),
+        ),
+        Happening::NeighbourBack { name } => line('i', ASIDE, format!("the {name} is there again")),
         Happening::GoalBlocked { blocked_by } => line(
             '■',
             ASIDE,

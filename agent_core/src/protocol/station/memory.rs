@@ -1,0 +1,203 @@
+//! What a station writes down of itself, and how it comes back from that.
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::mailboxes::Sending;
+use super::{Effect, Station};
+use crate::model::Symbol;
+use crate::protocol::delivery::{Heard, Inbox, Outbox};
+use crate::protocol::durable::{Durable, Ledger, Row, Rows, Unreadable, read_row, read_rows};
+use crate::protocol::{Answer, Event};
+
+const LINE: &str = "s/line";
+const NEXT_EVENT: &str = "s/next-event";
+const EVENT: &str = "s/event/";
+const NEIGHBOUR: &str = "s/neighbour/";
+const INSTRUCTIONS_IN: &str = "s/in/instruction/";
+const REPORTS_IN: &str = "s/in/report/";
+const LOCAL_IN: &str = "s/in/local/";
+const INSTRUCTIONS_OUT: &str = "s/out/instruction/";
+const REPORTS_OUT: &str = "s/out/report/";
+
+impl<M: Durable, T> Station<M, T>
+where
+    M::Out: Clone,
+{
+    /// For a machine that has just been made, in a new epoch: with all that one of its name has
+    /// written down, if that is anything.
+    ///
+    /// What was not acknowledged is sent again, and the last ends of goals are told again.
+    ///
+    /// # Errors
+    /// If a row cannot be read, or does not fit the machine.
+    pub fn recall(
+        name: Symbol,
+        epoch: u64,
+        mut machine: M,
+        rows: &Rows,
+    ) -> Result<Self, Unreadable> {
+        let Some(line) = read_row(rows, LINE)? else {
+            return Ok(Self::new(name, epoch, machine));
+        };
+        machine.recall(rows)?;
+        let mut station = Self::new(name, epoch, machine);
+        // What the machine has said at its start stands behind what it had said before.
+        let first = std::mem::take(&mut station.held);
+        station.line = line;
+        station.ledger = Ledger::of(rows, "s/");
+        station.next_event = read_row(rows, NEXT_EVENT)?.unwrap_or(1);
+        for row in read_rows::<Event>(rows, EVENT) {
+            let (number, event) = row?;
+            let number = parse(EVENT, number)?;
+            station.last_ends.push_back((number, event.clone()));
+            station.ready.push_back(Effect::Event { number, event });
+        }
+        for row in read_rows(rows, NEIGHBOUR) {
+            let (neighbour, line) = row?;
+            station.neighbours.insert(neighbour.into(), line);
+        }
+        station.mailboxes.instructions_in = inbox(rows, INSTRUCTIONS_IN)?;
+        station.mailboxes.reports_in = inbox(rows, REPORTS_IN)?;
+        station.mailboxes.local_in = inbox(rows, LOCAL_IN)?;
+        station.mailboxes.instructions_out = outboxes(rows, INSTRUCTIONS_OUT)?;
+        station.mailboxes.reports_out = outboxes(rows, REPORTS_OUT)?;
+        station.send_again();
+        for (_, effect) in first {
+            station.say_at_start(effect);
+        }
+        Ok(station)
+    }
+
+    fn send_again(&mut self) {
+        let instructions = self.mailboxes.instructions_out.iter();
+        let instructions: Vec<_> = instructions
+            .flat_map(|(to, sending)| sending.outbox.waiting().map(move |m| (to, m)))
+            .map(|(to, (seq, body))| Effect::Instruct {
+                to: to.clone(),
+                message: self.envelope(seq, body.clone()),
+            })
+            .collect();
+        let reports = self.mailboxes.reports_out.iter();
+        let reports: Vec<_> = reports
+            .flat_map(|(to, sending)| sending.outbox.waiting().map(move |m| (to, m)))
+            .map(|(to, (seq, body))| Effect::Report {
+                to: to.clone(),
+                message: self.envelope(seq, body.clone()),
+            })
+            .collect();
+        self.ready.extend(instructions);
+        self.ready.extend(reports);
+    }
+
+    /// What the machine has said when it recalled, numbered behind what it had said before.
+    fn say_at_start(&mut self, effect: Effect<M::Out, T>) {
+        match effect {
+            Effect::Instruct { to, message } => self.send_instruction(to, message.body),
+            Effect::Report { to, message } => {
+                let seq = self.mailboxes.push_report(&to, message.body.clone());
+                let message = self.envelope(seq, message.body);
+                self.hold(Effect::Report { to, message });
+            }
+            Effect::Event { event, .. } => self.tell_event(event),
+            other => self.hold(other),
+        }
+    }
+
+    /// The rows of the station itself that are different.
+    pub(super) fn own_rows(&mut self) -> Vec<Row> {
+        let ledger = &mut self.ledger;
+        ledger.put(LINE.to_owned(), &self.line);
+        ledger.put(NEXT_EVENT.to_owned(), &self.next_event);
+        let mut keys = BTreeSet::new();
+        for (number, event) in &self.last_ends {
+            let key = format!("{EVENT}{number:020}");
+            put_once(ledger, &mut keys, key, event);
+        }
+        ledger.keep_only(EVENT, &keys);
+        for (name, line) in &self.neighbours {
+            ledger.put(format!("{NEIGHBOUR}{name}"), line);
+        }
+        put_inbox(ledger, INSTRUCTIONS_IN, &self.mailboxes.instructions_in);
+        put_inbox(ledger, REPORTS_IN, &self.mailboxes.reports_in);
+        put_inbox(ledger, LOCAL_IN, &self.mailboxes.local_in);
+        for (to, sending) in &self.mailboxes.instructions_out {
+            put_outbox(ledger, INSTRUCTIONS_OUT, to, &sending.outbox);
+        }
+        for (to, sending) in &self.mailboxes.reports_out {
+            put_outbox(ledger, REPORTS_OUT, to, &sending.outbox);
+        }
+        ledger.take()
+    }
+}
+
+/// What is never changed once it is written needs no comparing.
+fn put_once<V: Serialize>(
+    ledger: &mut Ledger,
+    keys: &mut BTreeSet<String>,
+    key: String,
+    value: &V,
+) {
+    if !ledger.has(&key) {
+        ledger.put(key.clone(), value);
+    }
+    keys.insert(key);
+}
+
+fn put_inbox(ledger: &mut Ledger, prefix: &str, inbox: &Inbox<Answer>) {
+    for (from, heard) in inbox.senders() {
+        ledger.put(format!("{prefix}{from}"), heard);
+    }
+}
+
+/// The number of the next message at `…/<receiver>`, and what waits at `…/<receiver>/<number>`.
+fn put_outbox<B: Serialize>(ledger: &mut Ledger, prefix: &str, to: &Symbol, outbox: &Outbox<B>) {
+    ledger.put(format!("{prefix}{to}"), &outbox.next_seq());
+    let mut keys = BTreeSet::new();
+    for (seq, body) in outbox.waiting() {
+        put_once(ledger, &mut keys, format!("{prefix}{to}/{seq:020}"), body);
+    }
+    ledger.keep_only(&format!("{prefix}{to}/"), &keys);
+}
+
+fn inbox(rows: &Rows, prefix: &str) -> Result<Inbox<Answer>, Unreadable> {
+    let mut senders = Vec::new();
+    for row in read_rows::<Heard<Answer>>(rows, prefix) {
+        let (from, heard) = row?;
+        senders.push((Symbol::from(from), heard));
+    }
+    Ok(Inbox::with(senders))
+}
+
+fn outboxes<B: DeserializeOwned>(
+    rows: &Rows,
+    prefix: &str,
+) -> Result<std::collections::BTreeMap<Symbol, Sending<B>>, Unreadable> {
+    let heads = rows
+        .range(prefix.to_owned()..)
+        .map_while(|(key, _)| key.strip_prefix(prefix))
+        .filter(|rest| !rest.contains('/'));
+    let mut outboxes = std::collections::BTreeMap::new();
+    for to in heads {
+        let key = format!("{prefix}{to}");
+        let next_seq = read_row(rows, &key)?.unwrap_or(1);
+        let mut waiting = Vec::new();
+        let messages = format!("{key}/");
+        for row in read_rows::<B>(rows, &messages) {
+            let (seq, body) = row?;
+            waiting.push((parse(&messages, seq)?, body));
+        }
+        let outbox = Outbox::with(next_seq, waiting)
+            .ok_or_else(|| Unreadable::new(key, "messages that it speaks of are missing"))?;
+        outboxes.insert(Symbol::from(to), Sending::of(outbox));
+    }
+    Ok(outboxes)
+}
+
+fn parse(prefix: &str, number: &str) -> Result<u64, Unreadable> {
+    number
+        .parse()
+        .map_err(|error| Unreadable::new(format!("{prefix}{number}"), error))
+}

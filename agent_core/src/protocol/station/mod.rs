@@ -1,0 +1,433 @@
+//! A machine with its mailboxes and its memory: what makes a crash a pause.
+//!
+//! State, what was received and what is still to be sent are written down together, and nothing that
+//! depends on them leaves before that. So a process that is started again from what it has written
+//! down is to its neighbours as one that was slow. Only stopping goes ahead (decision 10): it is
+//! harmless to repeat and harmless to forget.
+
+mod effect;
+mod mailboxes;
+mod memory;
+#[cfg(test)]
+mod tests;
+
+pub use effect::{Arrival, Effect, Response};
+
+use std::collections::{BTreeMap, VecDeque};
+
+use super::delivery::{Envelope, Receipt};
+use super::durable::{Durable, Ledger, Row};
+use super::{ActionId, Answer, Event, Happening, Input, Instruction, Output, Reply, ReportBody};
+use crate::model::{Symbol, Time};
+use mailboxes::Mailboxes;
+
+/// How many of the latest events about goals that were accepted or have ended are told again after
+/// a restart: what was written down may have died with the process before it was told.
+const TOLD_AGAIN: usize = 32;
+
+/// A machine as its neighbours know it. `T` leads back to whoever waits for a response.
+///
+/// After every [`handle`](Self::handle): give what [`write_down`](Self::write_down) returns to the
+/// journal, call [`written`](Self::written) when it is on the disk, and take effects until there is
+/// none. One writing at a time; inputs may be handled meanwhile.
+#[derive(Clone, Debug)]
+pub struct Station<M: Durable, T> {
+    name: Symbol,
+    line: u64,
+    epoch: u64,
+    machine: M,
+    mailboxes: Mailboxes,
+    /// The line of each neighbour, as far as it was heard of.
+    neighbours: BTreeMap<Symbol, u64>,
+    /// What was stopped ahead of the numbered instruction to stop it, by superior.
+    ahead: BTreeMap<Symbol, Ahead>,
+    next_event: u64,
+    last_ends: VecDeque<(u64, Event)>,
+    /// Counts what was handled.
+    state: u64,
+    /// The state that is being written down.
+    writing: Option<u64>,
+    /// Whether something may be different from what was written down last.
+    dirty: bool,
+    /// What waits for a state to be written down.
+    held: VecDeque<(u64, Effect<M::Out, T>)>,
+    ready: VecDeque<Effect<M::Out, T>>,
+    ledger: Ledger,
+}
+
+/// Something was to be stopped before its turn.
+#[derive(Clone, Debug, Eq, PartialEq)]
+struct Ahead {
+    line: u64,
+    /// The number of the instruction that follows.
+    seq: u64,
+    id: ActionId,
+    /// Whether the machine has said that it stops.
+    stopping: bool,
+}
+
+impl<M: Durable, T> Station<M, T>
+where
+    M::Out: Clone,
+{
+    /// For a machine without a past, whose memory begins in this epoch.
+    pub fn new(name: Symbol, epoch: u64, machine: M) -> Self {
+        let mut station = Self {
+            name,
+            line: epoch,
+            epoch,
+            machine,
+            mailboxes: Mailboxes::default(),
+            neighbours: BTreeMap::new(),
+            ahead: BTreeMap::new(),
+            next_event: 1,
+            last_ends: VecDeque::new(),
+            state: 1,
+            writing: None,
+            dirty: true,
+            held: VecDeque::new(),
+            ready: VecDeque::new(),
+            ledger: Ledger::default(),
+        };
+        station.collect();
+        station
+    }
+
+    /// The machine inside.
+    pub fn machine(&self) -> &M {
+        &self.machine
+    }
+
+    /// Gives the machine back; what it had not yet said is lost.
+    pub fn into_machine(self) -> M {
+        self.machine
+    }
+
+    /// The epoch in which its memory begins.
+    pub fn line(&self) -> u64 {
+        self.line
+    }
+
+    /// When the machine is to be woken ([`Machine::wake_at`](super::Machine::wake_at)).
+    pub fn wake_at(&self) -> Option<Time> {
+        self.machine.wake_at()
+    }
+
+    /// How many effects wait for the disk.
+    pub fn held(&self) -> usize {
+        self.held.len()
+    }
+
+    /// Whether [`write_down`](Self::write_down) is worth calling: something may be different, and
+    /// nothing is being written.
+    pub fn wants_writing(&self) -> bool {
+        self.writing.is_none() && (self.dirty || !self.held.is_empty())
+    }
+
+    /// What is different from what was written down last; call [`written`](Self::written) once all
+    /// of it is on the disk. `None` while the last is still being written, and if nothing is
+    /// different: then nothing waits either.
+    pub fn write_down(&mut self) -> Option<Vec<Row>> {
+        if self.writing.is_some() {
+            return None;
+        }
+        self.dirty = false;
+        let mut rows = self.machine.write_down();
+        rows.append(&mut self.own_rows());
+        self.writing = Some(self.state);
+        if rows.is_empty() {
+            self.written();
+            return None;
+        }
+        Some(rows)
+    }
+
+    /// What [`write_down`](Self::write_down) has returned is on the disk.
+    pub fn written(&mut self) {
+        let Some(state) = self.writing.take() else {
+            return;
+        };
+        self.mailboxes.settle(state);
+        while let Some((_, effect)) = self.held.pop_front_if(|(waits_for, _)| *waits_for <= state) {
+            self.ready.push_back(effect);
+        }
+    }
+
+    /// The next thing that may go out now.
+    pub fn poll_effect(&mut self) -> Option<Effect<M::Out, T>> {
+        let mut effect = self.ready.pop_front()?;
+        // Stamped as late as possible, so that neighbours can forget as much as possible.
+        match &mut effect {
+            Effect::Instruct { to, message } => {
+                message.settled = self.mailboxes.instructions_settled(to);
+            }
+            Effect::Report { to, message } => message.settled = self.mailboxes.reports_settled(to),
+            _ => {}
+        }
+        Some(effect)
+    }
+
+    /// Takes one arrival at time `now`, which never goes back. `sender` waits for a response, which
+    /// comes as an [`Effect::Respond`].
+    pub fn handle(&mut self, now: Time, arrival: Arrival<M::In>, sender: Option<T>) {
+        self.state += 1;
+        self.dirty |= !matches!(arrival, Arrival::Input(Input::Wake));
+        match arrival {
+            Arrival::Instruction(message) => self.instruction(now, message, sender),
+            Arrival::StopAhead(message) => self.stop_ahead(now, &message),
+            Arrival::Report(message) => {
+                let receipt = self.mailboxes.reports_in.receive(&message);
+                if let Some(opened) = self.open(receipt, message.seq, sender) {
+                    self.know(now, &message.from, message.line);
+                    self.mailboxes.reports_in.applied(&message, None);
+                    let seq = message.seq;
+                    let ReportBody { id, report } = message.body;
+                    self.tell(now, Input::Report { id, report });
+                    self.respond(opened.sender, Response::Applied { seq, answer: None });
+                }
+            }
+            Arrival::Local(message) => {
+                let receipt = self.mailboxes.local_in.receive(&message);
+                if let Some(opened) = self.open(receipt, message.seq, sender) {
+                    if opened.reborn {
+                        let name = message.from.clone();
+                        self.tell(now, Input::Reborn { name });
+                    }
+                    self.mailboxes.local_in.applied(&message, None);
+                    let seq = message.seq;
+                    self.tell(now, Input::Local(message.body));
+                    self.respond(opened.sender, Response::Applied { seq, answer: None });
+                }
+            }
+            Arrival::Answered {
+                by,
+                line,
+                seq,
+                answer,
+            } => {
+                if let Some(to) = self.mailboxes.instruction_answered(&by, seq, self.state) {
+                    self.tell(now, Input::Answer { to, answer });
+                }
+                self.know(now, &by, line);
+            }
+            Arrival::Delivered { by, line, seq } => {
+                self.mailboxes.report_delivered(&by, seq, self.state);
+                self.know(now, &by, line);
+            }
+            Arrival::Input(input) => {
+                let reply = self.tell(now, input);
+                match reply {
+                    Some(Reply::Goal(result)) => self.respond(sender, Response::Goal(result)),
+                    Some(Reply::Command(result)) => self.respond(sender, Response::Command(result)),
+                    Some(Reply::Instruction(_)) | None => {
+                        self.respond(sender, Response::Noted);
+                    }
+                }
+            }
+        }
+    }
+
+    /// A numbered instruction.
+    fn instruction(&mut self, now: Time, message: Envelope<Instruction>, sender: Option<T>) {
+        let receipt = self.mailboxes.instructions_in.receive(&message);
+        let Some(opened) = self.open(receipt, message.seq, sender) else {
+            return;
+        };
+        self.know(now, &message.from, message.line);
+        let instruction = message.body.clone();
+        let ahead = self.ahead.get(&message.from).cloned();
+        let ahead = ahead.filter(|ahead| ahead.line == message.line);
+        let answer = match &ahead {
+            // It was followed when it ran ahead; how it ends is reported.
+            Some(ahead) if ahead.stopping && ahead.seq == message.seq => Answer::Suspending,
+            _ => self.instruct_machine(now, &message.from, instruction),
+        };
+        if let Some(ahead) = ahead {
+            if ahead.seq <= message.seq {
+                self.ahead.remove(&message.from);
+            } else if !ahead.stopping && starts(&message.body, &ahead.id) {
+                // What starts it was overtaken by what stops it: no motion comes of it.
+                self.try_to_stop(now, &message.from, ahead);
+            }
+        }
+        let seq = message.seq;
+        self.mailboxes
+            .instructions_in
+            .applied(&message, Some(answer.clone()));
+        let answer = Some(answer);
+        self.respond(opened.sender, Response::Applied { seq, answer });
+    }
+
+    /// A copy of an instruction to suspend, ahead of its turn. It is not answered.
+    fn stop_ahead(&mut self, now: Time, message: &Envelope<Instruction>) {
+        if self.mailboxes.instructions_in.is_past(message) {
+            return;
+        }
+        if let Instruction::Suspend { id } = &message.body {
+            let ahead = Ahead {
+                line: message.line,
+                seq: message.seq,
+                id: id.clone(),
+                stopping: false,
+            };
+            self.try_to_stop(now, &message.from, ahead);
+        }
+    }
+
+    fn try_to_stop(&mut self, now: Time, superior: &Symbol, mut ahead: Ahead) {
+        let id = ahead.id.clone();
+        let answer = self.instruct_machine(now, superior, Instruction::Suspend { id });
+        ahead.stopping = answer == Answer::Suspending;
+        self.ahead.insert(superior.clone(), ahead);
+    }
+
+    fn instruct_machine(&mut self, now: Time, from: &Symbol, instruction: Instruction) -> Answer {
+        let from = from.clone();
+        match self.tell(now, Input::Instruction { from, instruction }) {
+            Some(Reply::Instruction(answer)) => answer,
+            // Whoever waits is told so rather than left waiting.
+            _ => Answer::Rejected {
+                reason: "the machine gave no answer, which is a fault in it".to_owned(),
+            },
+        }
+    }
+
+    /// Sees to what is not to be applied.
+    fn open(&mut self, receipt: Receipt<Answer>, seq: u64, sender: Option<T>) -> Option<Opened<T>> {
+        let response = match receipt {
+            Receipt::New { reborn } => return Some(Opened { reborn, sender }),
+            Receipt::Again(answer) => Response::Applied { seq, answer },
+            Receipt::Old => Response::Superseded { seq },
+            Receipt::Gap { due } => Response::Gap { seq, due },
+        };
+        self.respond(sender, response);
+        None
+    }
+
+    /// A neighbour's memory begins in that epoch.
+    fn know(&mut self, now: Time, name: &Symbol, line: u64) {
+        match self.neighbours.insert(name.clone(), line) {
+            Some(before) if before < line => {
+                self.ahead.remove(name);
+                let name = name.clone();
+                self.tell(now, Input::Reborn { name });
+            }
+            Some(before) if before > line => {
+                self.neighbours.insert(name.clone(), before);
+            }
+            _ => {}
+        }
+    }
+
+    fn tell(&mut self, now: Time, input: Input<M::In>) -> Option<Reply> {
+        let reply = self.machine.handle(now, input);
+        self.collect();
+        reply
+    }
+
+    fn respond(&mut self, to: Option<T>, response: Response) {
+        if let Some(to) = to {
+            self.hold(Effect::Respond {
+                to,
+                response,
+                line: self.line,
+            });
+        }
+    }
+
+    fn hold(&mut self, effect: Effect<M::Out, T>) {
+        self.held.push_back((self.state, effect));
+    }
+
+    /// Takes all that the machine has decided.
+    fn collect(&mut self) {
+        while let Some(output) = self.machine.poll_output() {
+            match output {
+                Output::Instruct { to, instruction } => self.send_instruction(to, instruction),
+                Output::Report { to, id, report } => {
+                    let body = ReportBody { id, report };
+                    let seq = self.mailboxes.push_report(&to, body.clone());
+                    let message = self.envelope(seq, body);
+                    self.hold(Effect::Report { to, message });
+                }
+                Output::Observed { facts, reported_to } => {
+                    self.hold(Effect::Observed { facts, reported_to });
+                }
+                Output::Event(event) => self.tell_event(event),
+                Output::Local(local) => {
+                    let message = self.mailboxes.local_message(&self.name, self.epoch, local);
+                    let waits = self.held.iter();
+                    let mut waits = waits.filter(|(_, e)| matches!(e, Effect::Local(_)));
+                    let at_once = M::is_stop(&message.body) && waits.next().is_none();
+                    let effect = Effect::Local(message);
+                    if at_once {
+                        self.ready.push_back(effect);
+                    } else {
+                        self.hold(effect);
+                    }
+                }
+            }
+        }
+    }
+
+    fn send_instruction(&mut self, to: Symbol, instruction: Instruction) {
+        let seq = self.mailboxes.push_instruction(&to, instruction.clone());
+        let message = self.envelope(seq, instruction);
+        if let Instruction::Suspend { id } = &message.body {
+            // What has not been told to start yet need not be stopped ahead.
+            let mut held = self.held.iter().map(|(_, effect)| effect);
+            let starting = held.any(|effect| match effect {
+                Effect::Instruct { to: who, message } => *who == to && starts(&message.body, id),
+                _ => false,
+            });
+            if !starting {
+                let (to, message) = (to.clone(), message.clone());
+                self.ready.push_back(Effect::StopAhead { to, message });
+            }
+        }
+        self.hold(Effect::Instruct { to, message });
+    }
+
+    fn tell_event(&mut self, event: Event) {
+        let number = self.next_event;
+        self.next_event += 1;
+        let lasting = matches!(
+            event.what,
+            Happening::GoalAccepted { .. }
+                | Happening::GoalSucceeded
+                | Happening::GoalFailed { .. }
+                | Happening::GoalUnknown { .. }
+        );
+        if lasting {
+            self.last_ends.push_back((number, event.clone()));
+            if self.last_ends.len() > TOLD_AGAIN {
+                self.last_ends.pop_front();
+            }
+        }
+        self.hold(Effect::Event { number, event });
+    }
+
+    fn envelope<B>(&self, seq: u64, body: B) -> Envelope<B> {
+        Envelope {
+            from: self.name.clone(),
+            line: self.line,
+            epoch: self.epoch,
+            seq,
+            settled: 0,
+            body,
+        }
+    }
+}
+
+/// A message that is to be applied.
+struct Opened<T> {
+    reborn: bool,
+    sender: Option<T>,
+}
+
+fn starts(instruction: &Instruction, id: &ActionId) -> bool {
+    match instruction {
+        Instruction::Execute { .. } | Instruction::Resume { .. } => instruction.id() == id,
+        Instruction::Suspend { .. } | Instruction::Clear { .. } => false,
+    }
+}
