@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::{Agent, Goal, Intention};
 use crate::model::{Symbol, Task};
 use crate::planner::Planner;
-use crate::protocol::{GoalId, GoalRequest, Happening, Rejection};
+use crate::protocol::{GoalId, GoalRequest, Happening, Rejection, Urgency};
 
 impl<P: Planner> Agent<P> {
     /// Step 1 of Algorithms 3 and 4: a user's goal.
@@ -34,10 +34,33 @@ impl<P: Planner> Agent<P> {
             .as_ref()
             .and_then(|id| self.tasks_of(id).map(|tasks| (id, tasks)))
         {
-            None => Ok(None),
+            None => self.room_for(request.urgency).map(|()| None),
             Some((id, tasks)) if tasks == request.tasks => Ok(Some(id.clone())),
             Some((id, _)) => Err(Rejection::NameTaken(id.clone())),
         }
+    }
+
+    /// Whether one more goal of this urgency may wait. What superiors ask for is bounded by them.
+    fn room_for(&self, urgency: Urgency) -> Result<(), Rejection> {
+        let running = self.running.iter().map(|running| &running.intention);
+        let of_kind = |intention: &&Intention| {
+            intention.goal.superior.is_none() && intention.goal.urgency == urgency
+        };
+        let all = self.all_intentions().filter(of_kind).count();
+        let waiting = all - running.filter(of_kind).count();
+        let most = self.configuration.policy.most_waiting;
+        if waiting < most {
+            return Ok(());
+        }
+        let kind = match urgency {
+            Urgency::Normal => "goals",
+            Urgency::Emergency => "emergencies",
+        };
+        Err(Rejection::TooManyWaiting {
+            kind: kind.into(),
+            waiting,
+            most,
+        })
     }
 
     /// What a goal is for that is pursued, waits or has ended.

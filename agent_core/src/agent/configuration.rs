@@ -84,6 +84,10 @@ pub struct Policy {
     pub expansions_per_slice: u64,
     /// How often an action may fail before it is no longer tried for a goal.
     pub attempts: u32,
+    /// How many goals of users may wait (for their turn, suspended or set aside), emergencies and
+    /// others counted apart: who fills one list leaves room in the other. What is kept for goals,
+    /// in memory and on disk, is bounded by this.
+    pub most_waiting: usize,
 }
 
 impl Default for Policy {
@@ -94,6 +98,10 @@ impl Default for Policy {
             expansions_before_stopping: 200,
             expansions_per_slice: 200,
             attempts: 3,
+            most_waiting: MOST_WAITING,
         }
     }
 }
+
+/// More goals than anybody keeps in mind, and few enough to look through at every change.
+const MOST_WAITING: usize = 64;

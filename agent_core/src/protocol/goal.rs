@@ -85,6 +85,18 @@ pub enum Rejection {
     /// Another goal of this name has other tasks.
     #[error("there is another goal named `{0}` already")]
     NameTaken(GoalId),
+    /// More goals wait than this agent keeps.
+    #[error(
+        "{waiting} {kind} wait already, and no more than {most} may: cancel one, or ask again later"
+    )]
+    TooManyWaiting {
+        /// `emergencies` or `goals`.
+        kind: Symbol,
+        /// How many do.
+        waiting: usize,
+        /// How many may.
+        most: usize,
+    },
     /// A command about a goal that is not there.
     #[error("there is no goal named `{0}`")]
     UnknownGoal(GoalId),
