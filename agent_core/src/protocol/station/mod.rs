@@ -58,7 +58,8 @@ pub struct Station<M: Durable, T> {
 /// Something was to be stopped before its turn.
 #[derive(Clone, Debug, Eq, PartialEq)]
 struct Ahead {
-    line: u64,
+    /// Of the superior's start.
+    epoch: u64,
     /// The number of the instruction that follows.
     seq: u64,
     id: ActionId,
@@ -148,9 +149,11 @@ where
             return;
         };
         self.mailboxes.settle(state);
-        while let Some((_, effect)) = self.held.pop_front_if(|(waits_for, _)| *waits_for <= state) {
-            self.ready.push_back(effect);
-        }
+        let written = self
+            .held
+            .partition_point(|(waits_for, _)| *waits_for <= state);
+        let released = self.held.drain(..written).map(|(_, effect)| effect);
+        self.ready.extend(released);
     }
 
     /// The next thing that may go out now.
@@ -236,7 +239,9 @@ where
         self.know(now, &message.from, message.line);
         let instruction = message.body.clone();
         let ahead = self.ahead.get(&message.from).cloned();
-        let ahead = ahead.filter(|ahead| ahead.line == message.line);
+        // A superior that has started again may have decided otherwise: what ran ahead had not been
+        // written down.
+        let ahead = ahead.filter(|ahead| ahead.epoch == message.epoch);
         let answer = match &ahead {
             // It was followed when it ran ahead; how it ends is reported.
             Some(ahead) if ahead.stopping && ahead.seq == message.seq => Answer::Suspending,
@@ -265,7 +270,7 @@ where
         }
         if let Instruction::Suspend { id } = &message.body {
             let ahead = Ahead {
-                line: message.line,
+                epoch: message.epoch,
                 seq: message.seq,
                 id: id.clone(),
                 stopping: false,
