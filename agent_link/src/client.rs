@@ -33,9 +33,7 @@ const EVENTS_WAITING: usize = 16 * 1024;
 #[derive(Debug, thiserror::Error)]
 pub enum ClientError {
     /// zenoh does not say which.
-    #[error(
-        "no answer from robot `{robot}` on {key}: nothing there is running, or this user is not permitted to ask"
-    )]
+    #[error("no answer: not reachable or not permitted (robot `{robot}`, {key})")]
     NoAnswer {
         /// Whose.
         robot: String,
@@ -58,6 +56,7 @@ pub enum ClientError {
 pub struct Client {
     session: Session,
     keys: Keys,
+    name: Option<String>,
 }
 
 impl Client {
@@ -66,6 +65,17 @@ impl Client {
         Self {
             session: session.clone(),
             keys: keys.clone(),
+            name: None,
+        }
+    }
+
+    /// The same, as a user of this name, who asks for goals under it. Where there is access
+    /// control, users may ask under their own names only.
+    #[must_use]
+    pub fn named(self, name: &str) -> Self {
+        Self {
+            name: Some(name.to_owned()),
+            ..self
         }
     }
 
@@ -75,9 +85,11 @@ impl Client {
         if goal.id.is_none() {
             goal.id = Some(new_id(&goal));
         }
-        let key = match goal.urgency {
-            Urgency::Normal => self.keys.goal_normal(),
-            Urgency::Emergency => self.keys.goal_emergency(),
+        let key = match (goal.urgency, &self.name) {
+            (Urgency::Normal, None) => self.keys.goal_normal(),
+            (Urgency::Emergency, None) => self.keys.goal_emergency(),
+            (Urgency::Normal, Some(name)) => self.keys.goal_normal_by(name)?,
+            (Urgency::Emergency, Some(name)) => self.keys.goal_emergency_by(name)?,
         };
         self.ask("verdict", &key, &wire::goal_to_wire(&goal)?).await
     }

@@ -52,7 +52,9 @@ impl Link {
                 let to = instruction;
                 Some((Input::Answer { to, answer }, ReplyTo::Nobody))
             }
-            Arrival::Goal(urgency, asked) => self.read_goal(urgency, asked),
+            Arrival::Goal(urgency, sender, asked) => {
+                self.read_goal(urgency, sender.as_deref(), asked)
+            }
             Arrival::Command(question) => {
                 let command = question
                     .content("command", USER_LIMIT_BYTES)
@@ -110,7 +112,12 @@ impl Link {
         None
     }
 
-    fn read_goal<L>(&self, urgency: Urgency, asked: Asked) -> Option<(Input<L>, ReplyTo)> {
+    fn read_goal<L>(
+        &mut self,
+        urgency: Urgency,
+        sender: Option<&str>,
+        asked: Asked,
+    ) -> Option<(Input<L>, ReplyTo)> {
         let (goal, question) = match asked {
             Asked::Put(payload) => {
                 let goal = bounded(&payload, USER_LIMIT_BYTES)
@@ -125,7 +132,13 @@ impl Link {
             }
         };
         match goal {
-            Ok(goal) => Some((Input::Goal(goal.clone()), ReplyTo::User(goal, question))),
+            Ok(goal) => match self.admit(sender, &goal) {
+                Ok(()) => Some((Input::Goal(goal.clone()), ReplyTo::User(goal, question))),
+                Err(reason) => {
+                    self.tell_user(&Verdict::refused(&goal, reason), question);
+                    None
+                }
+            },
             Err(error) => {
                 self.tell_user(&Verdict::unreadable(&error), question);
                 None

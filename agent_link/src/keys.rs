@@ -19,6 +19,9 @@ const MAX_NAME_LENGTH: usize = 64;
 /// The first chunks below the robot that are not agents. `world` and `executor` are agents.
 const RESERVED: [&str; 5] = ["goal", "facts", "event", "clock", "alive"];
 
+/// In `intermezzo/<robot>/goal/emergency/<sender>`.
+const SENDER_PLACE: usize = 4;
+
 /// The keys of one robot.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct Keys {
@@ -68,6 +71,27 @@ impl Keys {
     /// Goals that interrupt: put or query.
     pub fn goal_emergency(&self) -> String {
         self.under("goal/emergency")
+    }
+
+    /// As [`goal_normal`](Self::goal_normal), by somebody who says who that is.
+    pub fn goal_normal_by(&self, sender: &str) -> Result<String, NameError> {
+        self.goal_by(&self.goal_normal(), sender)
+    }
+
+    /// As [`goal_emergency`](Self::goal_emergency), by somebody who says who that is.
+    pub fn goal_emergency_by(&self, sender: &str) -> Result<String, NameError> {
+        self.goal_by(&self.goal_emergency(), sender)
+    }
+
+    fn goal_by(&self, key: &str, sender: &str) -> Result<String, NameError> {
+        check_name(sender)?;
+        Ok(format!("{key}/{sender}"))
+    }
+
+    /// Who asks for a goal on this key, if it says so.
+    pub fn read_sender(key: &str) -> Option<&str> {
+        let sender = key.split('/').nth(SENDER_PLACE)?;
+        check_name(sender).ok().map(|()| sender)
     }
 
     /// What became of goals that came by plain put: published.
@@ -185,6 +209,17 @@ mod tests {
         let alive = keys.alive("child", 7).unwrap();
         assert_eq!(alive, "intermezzo/museum-1/alive/child/7");
         assert_eq!(Keys::read_alive(&alive), Some(("child", 7)));
+    }
+
+    #[test]
+    fn the_key_of_a_goal_may_say_who_asks() {
+        let keys = Keys::new("museum-1").unwrap();
+        let key = keys.goal_emergency_by("anna").unwrap();
+        assert_eq!(key, "intermezzo/museum-1/goal/emergency/anna");
+        assert_eq!(Keys::read_sender(&key), Some("anna"));
+        assert_eq!(Keys::read_sender(&keys.goal_emergency()), None);
+        assert_eq!(Keys::read_sender("intermezzo/r/goal/normal/*"), None);
+        assert!(keys.goal_normal_by("a/b").is_err());
     }
 
     #[test]

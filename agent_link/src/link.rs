@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Instant;
 
 use agent_core::model::{Symbol, Time};
-use agent_core::protocol::{self, Output};
+use agent_core::protocol::{self, GoalRequest, Output, Urgency};
 use serde::Serialize;
 use serde_json::{Value, json};
-use tokio::sync::mpsc;
 use zenoh::Session;
 
 use crate::channel::{Delivery, Receiver, Sender};
@@ -15,6 +15,8 @@ use crate::facts::{Board, Reader};
 use crate::inspect::{Inspect, View};
 use crate::mailbox::{Arrival, Mailbox};
 use crate::publisher::Publisher;
+use crate::queue::Arrivals;
+use crate::quota::Quota;
 use crate::wire::{self, Answer, Instruction, ReportBody, Text, VERSION, WireError};
 use crate::wiring::{LinkError, Wiring};
 
@@ -32,13 +34,15 @@ pub(crate) struct Link {
     to_elsewhere: Option<Sender<Value>>,
     pub(crate) board: Board,
     pub(crate) readers: BTreeMap<Arc<str>, Reader>,
+    quota: Quota,
+    opened: Instant,
 }
 
 impl Link {
     pub(crate) async fn open(
         session: &Session,
         wiring: Wiring,
-    ) -> Result<(Self, mpsc::Receiver<Arrival>), LinkError> {
+    ) -> Result<(Self, Arrivals), LinkError> {
         let (mailbox, arrivals) = Mailbox::open(session, &wiring).await?;
         let mut link = Self {
             session: session.clone(),
@@ -52,6 +56,8 @@ impl Link {
             to_elsewhere: None,
             board: Board::new(wiring.epoch),
             readers: BTreeMap::new(),
+            quota: Quota::new(wiring.limits),
+            opened: Instant::now(),
             wiring,
         };
         if let Some(key) = link.wiring.local_out.clone() {
@@ -65,6 +71,18 @@ impl Link {
         drop((self.to_executors, self.to_superiors, self.to_elsewhere));
         self.publisher.finish().await;
         self.mailbox.close().await;
+    }
+
+    /// Whether a goal of a user's may reach the machine, and else why not.
+    pub(crate) fn admit(&mut self, sender: Option<&str>, goal: &GoalRequest) -> Result<(), String> {
+        match goal.urgency {
+            // Those that wait are counted by the machine.
+            Urgency::Normal => Ok(()),
+            Urgency::Emergency => self
+                .quota
+                .admit(self.opened.elapsed(), sender, goal.id.as_ref())
+                .map_err(|error| error.to_string()),
+        }
     }
 
     /// A sender to `key`; `answered` says what arrives when a message was applied.

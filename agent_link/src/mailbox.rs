@@ -1,4 +1,4 @@
-//! Everything that can come in, in one queue.
+//! Everything that can come in, in one queue of two lanes.
 //!
 //! zenoh calls back on the threads that read from the network. Nothing is done there but to put
 //! what has come into the queue; what finds it full is dropped, and whoever counts on an answer
@@ -21,10 +21,8 @@ use zenoh::sample::SampleKind;
 use crate::inspect::View;
 use crate::keys::Keys;
 use crate::question::Question;
+use crate::queue::{Arrivals, Lane, lanes};
 use crate::wiring::{LinkError, Wiring};
-
-/// What may wait to be seen to. A machine sees to thousands in a second.
-const CAPACITY: usize = 1024;
 
 /// How long handing back what was declared may take at the end.
 const UNDECLARE_TIMEOUT: Duration = Duration::from_secs(2);
@@ -43,8 +41,8 @@ pub(crate) enum Arrival {
     Report(Question),
     /// From elsewhere.
     Local(Question),
-    /// From a user.
-    Goal(Urgency, Asked),
+    /// From a user, who may have said who that is.
+    Goal(Urgency, Option<Arc<str>>, Asked),
     /// From a user.
     Command(Question),
     /// From a user or a sensor.
@@ -76,7 +74,8 @@ pub(crate) enum Asked {
 pub(crate) struct Mailbox {
     session: Session,
     runtime: Handle,
-    arrivals: mpsc::Sender<Arrival>,
+    agents: Lane,
+    users: Lane,
     queryables: Vec<Queryable<()>>,
     subscribers: Vec<Subscriber<()>>,
     token: Option<LivelinessToken>,
@@ -88,71 +87,115 @@ impl Mailbox {
     pub(crate) async fn open(
         session: &Session,
         wiring: &Wiring,
-    ) -> Result<(Self, mpsc::Receiver<Arrival>), LinkError> {
-        let (arrivals, queue) = mpsc::channel(CAPACITY);
+    ) -> Result<(Self, Arrivals), LinkError> {
+        let (agents, users, arrivals) = lanes();
         let mut mailbox = Self {
             session: session.clone(),
             runtime: Handle::current(),
-            arrivals,
+            agents,
+            users,
             queryables: Vec::new(),
             subscribers: Vec::new(),
             token: None,
         };
         let keys = &wiring.keys;
         let own = keys.agent(&wiring.name)?;
-        mailbox
-            .asked(own.instruction(), Arrival::Instruction)
-            .await?;
-        mailbox.asked(own.report(), Arrival::Report).await?;
-        mailbox.asked(own.facts(), Arrival::WhatHolds).await?;
+        let (agents, users) = (mailbox.agents.clone(), mailbox.users.clone());
+        for (key, arrival) in [
+            (own.instruction(), Arrival::Instruction as fn(_) -> _),
+            (own.report(), Arrival::Report),
+            (own.facts(), Arrival::WhatHolds),
+        ] {
+            mailbox.asked(key, agents.clone(), arrival).await?;
+        }
         for view in View::ALL {
             let look = move |question| Arrival::Look(view, question);
-            mailbox.asked(own.view(view.name()), look).await?;
+            let key = own.view(view.name());
+            mailbox.asked(key, users.clone(), look).await?;
         }
         if let Some(key) = &wiring.local_in {
-            mailbox.asked(key.clone(), Arrival::Local).await?;
+            let key = key.clone();
+            mailbox.asked(key, agents.clone(), Arrival::Local).await?;
         }
         if wiring.takes_goals {
             for (key, urgency) in [
                 (keys.goal_normal(), Urgency::Normal),
                 (keys.goal_emergency(), Urgency::Emergency),
             ] {
-                let goal = move |asked| Arrival::Goal(urgency, asked);
+                mailbox.goals(key.clone(), key.clone(), urgency).await?;
+                // With the name of whoever asks.
+                let of_anyone = format!("{key}/anyone");
                 mailbox
-                    .put(key.clone(), move |put| goal(Asked::Put(put)))
-                    .await?;
-                mailbox
-                    .asked(key, move |query| goal(Asked::Query(query)))
+                    .goals(format!("{key}/*"), of_anyone, urgency)
                     .await?;
             }
-            mailbox.asked(keys.goal_command(), Arrival::Command).await?;
+            let key = keys.goal_command();
+            mailbox.asked(key, users.clone(), Arrival::Command).await?;
         }
         if wiring.takes_facts {
             let put = |put| Arrival::Facts(Asked::Put(put));
-            mailbox.put(keys.facts(), put).await?;
+            mailbox.put(keys.facts(), users.clone(), put).await?;
             let query = |query| Arrival::Facts(Asked::Query(query));
-            mailbox.asked(keys.facts(), query).await?;
+            mailbox.asked(keys.facts(), users, query).await?;
         }
         for executor in &wiring.executors {
             let name: Arc<str> = Arc::from(executor.as_str());
             let told = move |put| Arrival::Observed(name.clone(), put);
-            mailbox.put(keys.agent(executor)?.facts(), told).await?;
+            let key = keys.agent(executor)?.facts();
+            mailbox.put(key, agents.clone(), told).await?;
         }
         mailbox.watch_neighbours(wiring).await?;
         let token = session
             .liveliness()
             .declare_token(keys.alive(&wiring.name, wiring.epoch)?);
         mailbox.token = Some(token.await.map_err(LinkError::Zenoh)?);
-        Ok((mailbox, queue))
+        Ok((mailbox, arrivals))
+    }
+
+    /// Goals that are put or asked for on `key` come in. Where a query names more than one key, the
+    /// answer is given on `answer_key`.
+    async fn goals(
+        &mut self,
+        key: String,
+        answer_key: String,
+        urgency: Urgency,
+    ) -> Result<(), LinkError> {
+        let users = self.users.clone();
+        let subscriber = self.session.declare_subscriber(key.clone());
+        let subscriber = subscriber.callback(move |sample| {
+            if sample.kind() == SampleKind::Put {
+                let sender = Keys::read_sender(sample.key_expr()).map(Arc::from);
+                let put = Asked::Put(sample.payload().clone());
+                users.deliver(Arrival::Goal(urgency, sender, put));
+            }
+        });
+        self.subscribers
+            .push(subscriber.await.map_err(LinkError::Zenoh)?);
+        let (users, runtime) = (self.users.clone(), self.runtime.clone());
+        let nobody: Arc<str> = Arc::from(answer_key);
+        let queryable = self.session.declare_queryable(key).complete(true);
+        let queryable = queryable.callback(move |query| {
+            let sender = Keys::read_sender(query.key_expr()).map(Arc::from);
+            let key = match &sender {
+                Some(_) => Arc::from(query.key_expr().as_str()),
+                None => nobody.clone(),
+            };
+            let asked = Asked::Query(Question::new(query, &runtime, key));
+            users.deliver(Arrival::Goal(urgency, sender, asked));
+        });
+        self.queryables
+            .push(queryable.await.map_err(LinkError::Zenoh)?);
+        Ok(())
     }
 
     /// Queries on `key` come in as `arrival`.
     async fn asked(
         &mut self,
         key: String,
+        lane: Lane,
         arrival: impl Fn(Question) -> Arrival + Send + Sync + 'static,
     ) -> Result<(), LinkError> {
-        let (arrivals, runtime) = (self.arrivals.clone(), self.runtime.clone());
+        let runtime = self.runtime.clone();
         let own_key: Arc<str> = Arc::from(key.as_str());
         let queryable = self
             .session
@@ -160,7 +203,7 @@ impl Mailbox {
             .complete(true)
             .callback(move |query| {
                 let question = Question::new(query, &runtime, own_key.clone());
-                deliver(&arrivals, arrival(question));
+                lane.deliver(arrival(question));
             })
             .await
             .map_err(LinkError::Zenoh)?;
@@ -172,15 +215,15 @@ impl Mailbox {
     async fn put(
         &mut self,
         key: String,
+        lane: Lane,
         arrival: impl Fn(ZBytes) -> Arrival + Send + Sync + 'static,
     ) -> Result<(), LinkError> {
-        let arrivals = self.arrivals.clone();
         let subscriber = self
             .session
             .declare_subscriber(key)
             .callback(move |sample| {
                 if sample.kind() == SampleKind::Put {
-                    deliver(&arrivals, arrival(sample.payload().clone()));
+                    lane.deliver(arrival(sample.payload().clone()));
                 }
             })
             .await
@@ -191,7 +234,7 @@ impl Mailbox {
 
     /// Who else of this robot comes and goes, and who is there.
     async fn watch_neighbours(&mut self, wiring: &Wiring) -> Result<(), LinkError> {
-        let arrivals = self.arrivals.clone();
+        let agents = self.agents.clone();
         let (own, own_epoch) = (wiring.name.clone(), wiring.epoch);
         let subscriber = self
             .session
@@ -205,7 +248,7 @@ impl Mailbox {
                 if (name, epoch) != (own.as_str(), own_epoch) {
                     let appeared = sample.kind() == SampleKind::Put;
                     let neighbour = Arrival::Neighbour(name.to_owned(), epoch, appeared);
-                    deliver(&arrivals, neighbour);
+                    agents.deliver(neighbour);
                 }
             })
             .await
@@ -214,17 +257,17 @@ impl Mailbox {
         Ok(())
     }
 
-    /// Where arrivals go.
+    /// Where arrivals from agents go.
     pub(crate) fn arrivals(&self) -> mpsc::Sender<Arrival> {
-        self.arrivals.clone()
+        self.agents.sender()
     }
 
     /// Asks an executor for all it has told so far; the answer arrives by itself.
     pub(crate) fn ask_what_holds(&self, executor: Arc<str>, key: String) {
-        let (session, arrivals) = (self.session.clone(), self.arrivals.clone());
+        let (session, agents) = (self.session.clone(), self.agents.clone());
         self.runtime.spawn(async move {
             for _ in 0..FACTS_ATTEMPTS {
-                let (arrivals, executor) = (arrivals.clone(), executor.clone());
+                let (agents, executor) = (agents.clone(), executor.clone());
                 let (answered, mut answer) = mpsc::unbounded_channel();
                 // Into the queue right where it is read from the network, and with the priority of
                 // reports: a later report must not be overtaken by what it has outdated.
@@ -237,7 +280,7 @@ impl Mailbox {
                     .callback(move |reply| {
                         if let Ok(sample) = reply.into_result() {
                             let payload = sample.payload().clone();
-                            deliver(&arrivals, Arrival::AllObserved(executor.clone(), payload));
+                            agents.deliver(Arrival::AllObserved(executor.clone(), payload));
                             let _ = answered.send(());
                         }
                     })
@@ -262,12 +305,5 @@ impl Mailbox {
         if tokio::time::timeout(UNDECLARE_TIMEOUT, wait).await.is_err() {
             tracing::warn!("the network did not let go within {UNDECLARE_TIMEOUT:?}");
         }
-    }
-}
-
-fn deliver(arrivals: &mpsc::Sender<Arrival>, arrival: Arrival) {
-    // A closed queue is that of a machine that has ended.
-    if let Err(mpsc::error::TrySendError::Full(arrival)) = arrivals.try_send(arrival) {
-        tracing::warn!("more than {CAPACITY} messages wait; one is dropped: {arrival:?}");
     }
 }

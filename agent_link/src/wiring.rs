@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use crate::clock::epoch_now;
 use crate::keys::{Keys, NameError};
+use crate::quota::Limits;
 use crate::wire::WireError;
 
 /// What a machine is connected to.
@@ -19,6 +20,8 @@ pub struct Wiring {
     pub executors: Vec<String>,
     /// Whether users' goals and commands are for it. One machine of a robot takes them.
     pub takes_goals: bool,
+    /// How much users may ask for.
+    pub limits: Limits,
     /// Whether it wants to know what users and sensors say about the world.
     pub takes_facts: bool,
     /// The key on which [`Input::Local`](agent_core::protocol::Input::Local) arrives.
@@ -38,6 +41,7 @@ impl Wiring {
             epoch: epoch_now(),
             executors: Vec::new(),
             takes_goals: false,
+            limits: Limits::default(),
             takes_facts: false,
             local_in: None,
             local_out: None,

@@ -142,7 +142,18 @@ impl Verdict {
         }
     }
 
-    /// The agent never saw it.
+    /// The agent never saw it, for this reason.
+    pub fn refused(goal: &GoalRequest, reason: String) -> Self {
+        Self {
+            v: VERSION,
+            id: goal.id.as_ref().map(ToString::to_string),
+            accepted: false,
+            reason: Some(reason),
+            task: Some(tasks_as_text(&goal.tasks)),
+        }
+    }
+
+    /// It could not be read.
     pub fn unreadable(error: &WireError) -> Self {
         Self {
             v: VERSION,
