@@ -59,6 +59,7 @@ mod incoming;
 mod inspect;
 mod inspect_agent;
 mod inspect_alternatives;
+pub mod journal;
 mod keys;
 mod link;
 mod mailbox;
