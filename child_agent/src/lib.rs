@@ -4,6 +4,7 @@
 //! map of its own: the map of the area it works in comes with its parent's instruction (the paper,
 //! section 7).
 
+#[cfg(feature = "process")]
 pub mod program;
 
 use std::sync::Arc;

@@ -11,6 +11,7 @@ mod faults;
 mod floor;
 mod place;
 mod profile;
+#[cfg(feature = "process")]
 pub mod program;
 mod refusal;
 mod setup;

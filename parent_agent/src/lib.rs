@@ -4,6 +4,7 @@
 //! map of the area that the action is about. It does not know how the child does it, nor that
 //! there is a robot below.
 
+#[cfg(feature = "process")]
 pub mod program;
 
 use std::collections::BTreeMap;

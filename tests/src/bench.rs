@@ -79,6 +79,7 @@ impl Bench {
                         Report::Progress { .. } => "progress".to_owned(),
                         Report::Success { .. } => "success".to_owned(),
                         Report::Failure { blocked_by, .. } => format!("failure {blocked_by:?}"),
+                        Report::Unknown { .. } => "unknown".to_owned(),
                         Report::Suspended { .. } => "suspended".to_owned(),
                     };
                     self.reported.push(format!("#{} {what}", id.number));

@@ -1,5 +1,6 @@
 //! The robot's executor: one action at a time, and records of those that were suspended.
 
+#[cfg(feature = "process")]
 mod inspect;
 mod instructions;
 mod memory;
