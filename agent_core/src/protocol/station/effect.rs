@@ -9,6 +9,9 @@ use crate::protocol::{Answer, Event, GoalId, Input, Instruction, Rejection, Repo
 pub enum Arrival<L> {
     /// From a superior.
     Instruction(Envelope<Instruction>),
+    /// From a superior, and it makes no sense: the reason in place of the instruction. It is applied
+    /// by being rejected, so that what follows is not held up.
+    Unreadable(Envelope<String>),
     /// From a superior: an [`Instruction::Suspend`] ahead of its turn. Not answered.
     StopAhead(Envelope<Instruction>),
     /// From an executor.

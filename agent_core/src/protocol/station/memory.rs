@@ -15,6 +15,7 @@ use crate::protocol::{Answer, Event};
 const LINE: &str = "s/line";
 const NEXT_EVENT: &str = "s/next-event";
 const EVENT: &str = "s/event/";
+const OBSERVED: &str = "s/observed/";
 const NEIGHBOUR: &str = "s/neighbour/";
 const INSTRUCTIONS_IN: &str = "s/in/instruction/";
 const REPORTS_IN: &str = "s/in/report/";
@@ -54,6 +55,12 @@ where
             let number = parse(EVENT, number)?;
             station.last_ends.push_back((number, event.clone()));
             station.ready.push_back(Effect::Event { number, event });
+        }
+        for row in read_rows(rows, OBSERVED) {
+            let (_, (facts, reported_to)) = row?;
+            station
+                .ready
+                .push_back(Effect::Observed { facts, reported_to });
         }
         for row in read_rows(rows, NEIGHBOUR) {
             let (neighbour, line) = row?;
@@ -117,6 +124,16 @@ where
             put_once(ledger, &mut keys, key, event);
         }
         ledger.keep_only(EVENT, &keys);
+        // It goes out once this is written, unless the process dies just then.
+        let mut keys = BTreeSet::new();
+        for (_, effect) in &self.held {
+            if let Effect::Observed { facts, reported_to } = effect {
+                let key = format!("{OBSERVED}{:020}", keys.len());
+                ledger.put(key.clone(), &(facts, reported_to));
+                keys.insert(key);
+            }
+        }
+        ledger.keep_only(OBSERVED, &keys);
         for (name, line) in &self.neighbours {
             ledger.put(format!("{NEIGHBOUR}{name}"), line);
         }

@@ -156,6 +156,32 @@ where
         self.ready.extend(released);
     }
 
+    /// Everything that waits may go out, written down or not: for a station without a journal, and
+    /// for the world, which waits for nobody's disk.
+    pub fn release(&mut self) {
+        self.mailboxes.settle(self.state);
+        let released = self.held.drain(..).map(|(_, effect)| effect);
+        self.ready.extend(released);
+    }
+
+    /// Those who wait for a response that waits for the disk, when that cannot be written: they are
+    /// to be told so. What they have asked for has happened all the same, and a message that is
+    /// repeated is answered once it is written down.
+    pub fn refuse_waiting(&mut self) -> Vec<T> {
+        let mut waiting = Vec::new();
+        let held = std::mem::take(&mut self.held).into_iter();
+        self.held = held
+            .filter_map(|(state, effect)| match effect {
+                Effect::Respond { to, .. } => {
+                    waiting.push(to);
+                    None
+                }
+                effect => Some((state, effect)),
+            })
+            .collect();
+        waiting
+    }
+
     /// The next thing that may go out now.
     pub fn poll_effect(&mut self) -> Option<Effect<M::Out, T>> {
         let mut effect = self.ready.pop_front()?;
@@ -177,6 +203,14 @@ where
         self.dirty |= !matches!(arrival, Arrival::Input(Input::Wake));
         match arrival {
             Arrival::Instruction(message) => self.instruction(now, message, sender),
+            Arrival::Unreadable(message) => {
+                let receipt = self.mailboxes.instructions_in.receive(&message);
+                if let Some(opened) = self.open(receipt, message.seq, sender) {
+                    self.know(now, &message.from, message.line);
+                    let reason = message.body.clone();
+                    self.answered(&message, Answer::Rejected { reason }, opened.sender);
+                }
+            }
             Arrival::StopAhead(message) => self.stop_ahead(now, &message),
             Arrival::Report(message) => {
                 let receipt = self.mailboxes.reports_in.receive(&message);
@@ -255,12 +289,15 @@ where
                 self.try_to_stop(now, &message.from, ahead);
             }
         }
-        let seq = message.seq;
-        self.mailboxes
-            .instructions_in
-            .applied(&message, Some(answer.clone()));
-        let answer = Some(answer);
-        self.respond(opened.sender, Response::Applied { seq, answer });
+        self.answered(&message, answer, opened.sender);
+    }
+
+    /// A numbered instruction has been seen to.
+    fn answered<B>(&mut self, message: &Envelope<B>, answer: Answer, sender: Option<T>) {
+        let inbox = &mut self.mailboxes.instructions_in;
+        inbox.applied(message, Some(answer.clone()));
+        let (seq, answer) = (message.seq, Some(answer));
+        self.respond(sender, Response::Applied { seq, answer });
     }
 
     /// A copy of an instruction to suspend, ahead of its turn. It is not answered.

@@ -1,12 +1,13 @@
 //! A machine that writes down all it hears, and what a station promises of it.
 
+mod disk;
 mod exchange;
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
 
 use super::*;
-use crate::model::Atom;
+use crate::model::{Atom, FactChange};
 use crate::protocol::durable::{Rows, Unreadable, read_row};
 use crate::protocol::{Command, Machine, Report};
 
@@ -58,6 +59,12 @@ impl Machine for Toy {
                     }
                     Command::Suspend(_) => {
                         self.instruct(Instruction::Suspend { id: id(self.next) })
+                    }
+                    Command::Cancel(door) if door == "door" => {
+                        self.outputs.push_back(Output::Observed {
+                            facts: vec![FactChange::Remove(Atom::new("open", ["door"]))],
+                            reported_to: None,
+                        });
                     }
                     Command::Cancel(goal) => self.outputs.push_back(Output::Event(Event {
                         at,
