@@ -112,6 +112,26 @@ impl Client {
         Ok(answer[view.name()].take())
     }
 
+    /// How the processes of the roles are. `None` where nobody looks after them, or nobody answers.
+    pub async fn supervisor(&self) -> Result<Option<Value>, ClientError> {
+        let replies = self
+            .session
+            .get(self.keys.supervisor_status())
+            .timeout(QUERY_TIMEOUT)
+            .await
+            .map_err(ClientError::Zenoh)?;
+        match replies.recv_async().await {
+            Ok(reply) => match reply.result() {
+                Ok(sample) => {
+                    let mut answer: Value = wire::read("status", &sample.payload().to_bytes())?;
+                    Ok(Some(answer["status"].take()))
+                }
+                Err(_) => Ok(None),
+            },
+            Err(_) => Ok(None),
+        }
+    }
+
     /// The agents that are alive, and the epochs of their starts. One that hangs counts for two
     /// seconds more.
     pub async fn alive(&self) -> Result<Vec<(String, u64)>, ClientError> {

@@ -17,7 +17,7 @@ pub enum NameError {
 const MAX_NAME_LENGTH: usize = 64;
 
 /// The first chunks below the robot that are not agents. `world` and `executor` are agents.
-const RESERVED: [&str; 5] = ["goal", "facts", "event", "clock", "alive"];
+const RESERVED: [&str; 6] = ["goal", "facts", "event", "clock", "alive", "supervisor"];
 
 /// In `intermezzo/<robot>/goal/emergency/<sender>`.
 const SENDER_PLACE: usize = 4;
@@ -132,6 +132,11 @@ impl Keys {
     /// From the world to the controller: query.
     pub fn executor_sensor(&self) -> String {
         self.under("executor/sensor")
+    }
+
+    /// How the processes of the roles are, where `intermezzo up` looks after them: query.
+    pub fn supervisor_status(&self) -> String {
+        self.under("supervisor/status")
     }
 
     /// The liveliness token of one start of an agent. Without the epoch, a process that takes the

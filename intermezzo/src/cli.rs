@@ -24,7 +24,7 @@ Begin with:
 
 Exit status:
   0  all went as it should
-  1  a goal failed or was rejected, a role died, or a file has faults
+  1  a goal failed or was rejected, a role cannot be started, or a file has faults
   2  the command cannot be carried out as it was typed
   3  no robot is running, or none answers
   4  `plan`: it is proved that there is no plan
@@ -114,7 +114,10 @@ Examples:
   intermezzo up                                     the museum, in real time
   intermezzo up --speed 10 --start n40              ten times as fast, from the main hall
   intermezzo up my/place --robot anna               a place of one's own, a robot of that name
+  intermezzo up --state robot-state                 keep goals and places there: go on where it was
   intermezzo up --scenario story.toml --until-done  play a story, then end
+
+A role that dies or hangs is started again; `intermezzo status` shows it.
 
 A scenario is TOML, one event after the other:
   [[event]]
@@ -127,7 +130,7 @@ A scenario is TOML, one event after the other:
                               # or suspend, resume, cancel = \"tour\"
 
 Exit status: 0 after Ctrl-C; with --until-done, 0 if all goals of the scenario succeeded, else 1;
-1 if a role dies; 2 if the place or the scenario is not in order.")]
+1 if a role ends whenever it is started; 2 if the place or the scenario is not in order.")]
 pub(crate) struct UpArgs {
     /// A folder with map, domains and execution models, or `museum`, which is built in.
     #[arg(value_name = "PLACE", default_value = "museum")]
@@ -149,6 +152,16 @@ pub(crate) struct UpArgs {
     pub(crate) until_done: bool,
     #[command(flatten)]
     pub(crate) planner: PlannerOptions,
+    /// Where the roles keep their journals: the next `up` with the same goes on where this one was.
+    /// Without it, in a temporary directory that is removed at the end.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) state: Option<PathBuf>,
+    /// Start no world: it runs elsewhere, as motors and sensors of a real robot do.
+    #[arg(long)]
+    pub(crate) no_world: bool,
+    /// Kill a role that has not answered for so many seconds, and start it again.
+    #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = at_least_a_second)]
+    pub(crate) hang_limit: Duration,
     /// Have some actions fail, stop late, refuse to stop or be slow: which ones, this seed decides.
     #[arg(long, value_name = "SEED")]
     pub(crate) faults: Option<u64>,
@@ -174,7 +187,8 @@ Examples:
   intermezzo goal '(and (show n2) (show n12))' --id morning --wait
   intermezzo goal '(go n28)' --emergency --priority 5 --deadline 120
 
-Exit status: 0 accepted, with --wait: reached; 1 rejected or failed; 2 not a goal; 3 no robot.")]
+Exit status: 0 accepted, with --wait: reached; 1 rejected or failed; 2 not a goal; 3 no robot, or with
+--wait: none for as long as --patience says.")]
 pub(crate) struct GoalArgs {
     /// One task, or several to be done in this order.
     #[arg(value_name = "TASK")]
@@ -199,6 +213,9 @@ pub(crate) struct GoalArgs {
     /// Return when the goal has ended.
     #[arg(long, short)]
     pub(crate) wait: bool,
+    /// With --wait: for how many seconds to wait for a robot that is down.
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
+    pub(crate) patience: Duration,
     /// Answer with JSON.
     #[arg(long)]
     pub(crate) json: bool,
@@ -365,6 +382,13 @@ fn seconds(text: &str) -> Result<Duration, String> {
     let number = text.parse::<f64>().ok();
     let duration = number.and_then(|number| Duration::try_from_secs_f64(number).ok());
     duration.ok_or_else(|| "expected a number of seconds".to_owned())
+}
+
+fn at_least_a_second(text: &str) -> Result<Duration, String> {
+    match seconds(text) {
+        Ok(limit) if limit >= Duration::from_secs(1) => Ok(limit),
+        _ => Err("expected a number of seconds of at least 1".to_owned()),
+    }
 }
 
 fn speed(text: &str) -> Result<f64, String> {

@@ -1,7 +1,9 @@
 //! The robot that a command is for.
 
+use std::path::{Path, PathBuf};
+
 use agent_link::options::DEFAULT_ROBOT;
-use agent_link::registry::{Registry, RegistryError};
+use agent_link::registry::{Registry, RegistryError, RunningRobot};
 use agent_link::session::{self, Role, SessionError};
 use agent_link::{Client, ClientError, Keys, Session};
 
@@ -13,6 +15,10 @@ pub(crate) struct Connection {
     pub(crate) session: Session,
     pub(crate) keys: Keys,
     pub(crate) client: Client,
+    /// Where the robot was found, if it was looked for on this machine.
+    pub(crate) found_at: Option<String>,
+    /// Zenoh settings.
+    pub(crate) file: Option<PathBuf>,
 }
 
 impl Connection {
@@ -27,16 +33,33 @@ impl Connection {
             None => false,
             Some(file) => session::names_routers(file).map_err(Failure::bad_input)?,
         };
-        let (robot, connect) = if target.connect.is_empty() && !named_there {
+        if target.connect.is_empty() && !named_there {
             let running = Registry::of_user()
                 .and_then(|registry| registry.find(named))
                 .map_err(not_found)?;
-            (running.robot, vec![running.endpoint])
-        } else {
-            let robot = named.unwrap_or(DEFAULT_ROBOT).to_owned();
-            (robot, target.connect.clone())
-        };
-        let keys = Keys::new(&robot).map_err(Failure::bad_input)?;
+            return Self::to(running, file).await;
+        }
+        let robot = named.unwrap_or(DEFAULT_ROBOT);
+        Self::connect(robot, target.connect.clone(), file).await
+    }
+
+    /// Connects to a robot of this machine.
+    ///
+    /// # Errors
+    /// If nobody answers where it should be.
+    pub(crate) async fn to(running: RunningRobot, file: Option<&Path>) -> Result<Self, Failure> {
+        let connect = vec![running.endpoint.clone()];
+        let mut connection = Self::connect(&running.robot, connect, file).await?;
+        connection.found_at = Some(running.endpoint);
+        Ok(connection)
+    }
+
+    async fn connect(
+        robot: &str,
+        connect: Vec<String>,
+        file: Option<&Path>,
+    ) -> Result<Self, Failure> {
+        let keys = Keys::new(robot).map_err(Failure::bad_input)?;
         let session = session::open(&Role::Client { connect }, file)
             .await
             .map_err(|error| match error {
@@ -51,6 +74,8 @@ impl Connection {
             client: Client::new(&session, &keys),
             session,
             keys,
+            found_at: None,
+            file: file.map(Path::to_owned),
         })
     }
 

@@ -26,6 +26,9 @@ pub(crate) async fn run(args: DemoArgs) -> Result<Exit, Failure> {
         listen: Vec::new(),
         connect: Vec::new(),
         zenoh_config: None,
+        state: None,
+        world_elsewhere: false,
+        hang_limit: crate::robot::HANG_LIMIT,
     };
     let performance = Performance {
         scenario: Some(scenario),

@@ -1,15 +1,16 @@
 //! `intermezzo status`: what a robot does, has set aside, waits for and believes.
 
 use std::fmt::Write;
+use std::time::{SystemTime, UNIX_EPOCH};
 
-use agent_link::{Client, View};
+use agent_link::{Client, ClientError, View};
 use executor_sim::program::WORLD;
 use serde_json::{Map, Value, json};
 
 use crate::cli::StatusArgs;
 use crate::exit::{Exit, Failure};
 use crate::show::alternatives;
-use crate::style::{ASIDE, BOLD, DIM, GOOD, URGENT};
+use crate::style::{ASIDE, BAD, BOLD, DIM, GOOD, URGENT};
 use crate::target::{Connection, unanswered};
 
 /// The order in which agents are shown; others follow.
@@ -20,34 +21,39 @@ const FACTS_SHOWN: usize = 12;
 pub(crate) async fn run(args: StatusArgs) -> Result<Exit, Failure> {
     let connection = Connection::open(&args.target).await?;
     let looked = look_at_all(&connection, args.plans).await;
-    let agents = connection.close(looked).await?;
+    let Seen { agents, processes } = connection.close(looked).await?;
     if args.json {
-        anstream::println!(
-            "{}",
-            json!({ "v": agent_link::wire::VERSION, "agents": agents })
-        );
+        let seen = json!({
+            "v": agent_link::wire::VERSION, "agents": agents, "processes": processes,
+        });
+        anstream::println!("{seen}");
     } else {
-        anstream::print!("{}", for_people(&agents, args.plans));
+        anstream::print!("{}", for_people(&agents, &processes, args.plans));
     }
     Ok(Exit::Done)
 }
 
-/// Name and views of every agent that is there.
-async fn look_at_all(connection: &Connection, plans: bool) -> Result<Map<String, Value>, Failure> {
-    let mut names: Vec<String> = connection
-        .client
+/// What there is to see of a robot.
+struct Seen {
+    /// Name and views of every agent that answers; `null` for one that does not, or is gone.
+    agents: Map<String, Value>,
+    /// How the processes of the roles are; `null` where nobody looks after them.
+    processes: Value,
+}
+
+async fn look_at_all(connection: &Connection, plans: bool) -> Result<Seen, Failure> {
+    let client = &connection.client;
+    let mut names: Vec<String> = client
         .alive()
         .await
         .map_err(unanswered)?
         .into_iter()
         .map(|(name, _)| name)
         .collect();
-    names.sort_by_key(|name| {
-        let place = ORDER.iter().position(|known| known == name);
-        (place.unwrap_or(ORDER.len()), name.clone())
-    });
+    names.sort();
     names.dedup();
-    if names.is_empty() {
+    let processes = client.supervisor().await.map_err(unanswered)?;
+    if names.is_empty() && processes.is_none() {
         return Err(Failure::nobody_there(format_args!(
             "nobody of robot `{}` is there",
             connection.keys.robot()
@@ -55,37 +61,107 @@ async fn look_at_all(connection: &Connection, plans: bool) -> Result<Map<String,
         .advice("check the name (--robot) and the address (--connect)"));
     }
     let mut agents = Map::new();
-    for name in names {
-        let views = look_at(&connection.client, &name, plans).await?;
-        agents.insert(name, views);
+    for name in &names {
+        // Whoever has died or hangs since must not keep the others from being seen.
+        let views = match look_at(client, name, plans).await {
+            Ok(views) => views,
+            Err(ClientError::NoAnswer { .. }) => Value::Null,
+            Err(error) => return Err(unanswered(error)),
+        };
+        agents.insert(name.clone(), views);
     }
-    Ok(agents)
+    let processes = processes.map_or(Value::Null, |mut status| status["roles"].take());
+    // A robot with agents of other names may well do without those of these.
+    if names.iter().all(|name| ORDER.contains(&name.as_str())) {
+        for name in ORDER {
+            agents.entry(name).or_insert(Value::Null);
+        }
+    }
+    Ok(Seen { agents, processes })
 }
 
 /// Alternatives take the agent some planning: they are asked for only if they are wanted.
-async fn look_at(client: &Client, agent: &str, plans: bool) -> Result<Value, Failure> {
+async fn look_at(client: &Client, agent: &str, plans: bool) -> Result<Value, ClientError> {
     let mut views = Map::new();
     let wanted = |view: &View| plans || *view != View::Alternatives;
     for view in View::ALL.into_iter().filter(wanted) {
-        let seen = client.look(agent, view).await.map_err(unanswered)?;
+        let seen = client.look(agent, view).await?;
         views.insert(view.name().to_owned(), seen);
     }
     Ok(views.into())
 }
 
-fn for_people(agents: &Map<String, Value>, plans: bool) -> String {
+fn for_people(agents: &Map<String, Value>, processes: &Value, plans: bool) -> String {
     let mut text = String::new();
-    for name in ORDER {
-        if let Some(views) = agents.get(name) {
+    let others = agents.keys().map(String::as_str);
+    let others = others.filter(|name| !ORDER.contains(name));
+    for name in ORDER.into_iter().chain(others) {
+        let Some(views) = agents.get(name) else {
+            continue;
+        };
+        let process = &processes[name];
+        if views.is_null() {
+            let _ = writeln!(
+                text,
+                "{BOLD}{name:<9}{BOLD:#}{BAD}{}{BAD:#}",
+                absent(process)
+            );
+        } else {
             agent(&mut text, name, views, plans);
         }
-    }
-    for (name, views) in agents {
-        if !ORDER.contains(&name.as_str()) {
-            agent(&mut text, name, views, plans);
+        if let Some(words) = lives(process) {
+            let _ = writeln!(text, "           {DIM}{words}{DIM:#}");
         }
     }
     text
+}
+
+/// Why there is nothing to see of an agent.
+fn absent(process: &Value) -> String {
+    match process["state"].as_str() {
+        Some("down") => format!(
+            "is down; next start in {:.1} s",
+            process["next_start_s"].as_f64().unwrap_or_default()
+        ),
+        Some("starting") => "is starting".to_owned(),
+        Some("given_up") => "is down, and is not started again".to_owned(),
+        Some(_) => "does not answer".to_owned(),
+        None => "is gone".to_owned(),
+    }
+}
+
+/// What has become of an agent's process so far.
+fn lives(process: &Value) -> Option<String> {
+    let now_s = SystemTime::now().duration_since(UNIX_EPOCH).ok()?;
+    let ago = |at: &Value| Some(duration((now_s.as_secs_f64() - at.as_f64()?).max(0.0)));
+    let mut words = Vec::new();
+    if let Some(pid) = process["process"].as_u64() {
+        words.push(format!("process {pid}"));
+    }
+    if let Some(up) = ago(&process["up_since_unix_s"]) {
+        words.push(format!("up for {up}"));
+    }
+    match process["restarts"].as_u64() {
+        None | Some(0) => {}
+        Some(1) => words.push("started again once".to_owned()),
+        Some(times) => words.push(format!("started again {times} times")),
+    }
+    if let (Some(how), Some(ago)) = (
+        process["last_exit"].as_str(),
+        ago(&process["last_exit_unix_s"]),
+    ) {
+        words.push(format!("the last end {ago} ago: {how}"));
+    }
+    (!words.is_empty()).then(|| words.join(", "))
+}
+
+/// In the unit in which people say it.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 100.0 => format!("{s:.0} s"),
+        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
 }
 
 /// Writing to text does not fail.
@@ -98,12 +174,16 @@ fn agent(text: &mut String, name: &str, views: &Value, with_plans: bool) {
     let _ = write!(text, "{BOLD}{name:<9}{BOLD:#}");
     let running = &status["running"];
     let action = status["action"]["action"].as_str();
+    let holds = status["holds"] == true;
     match (goal_words(running), action) {
         (Some(goal), Some(action)) if status["phase"] == "stopping" => {
             let _ = writeln!(text, "{goal}: {ASIDE}stopping{ASIDE:#} {action}");
         }
         (Some(goal), Some(action)) => {
             let _ = writeln!(text, "{GOOD}▶{GOOD:#} {goal}: {action}");
+        }
+        (Some(goal), None) if holds => {
+            let _ = writeln!(text, "{goal}");
         }
         (Some(goal), None) => {
             let _ = writeln!(text, "{GOOD}▶{GOOD:#} {goal}: planning");
@@ -114,6 +194,13 @@ fn agent(text: &mut String, name: &str, views: &Value, with_plans: bool) {
         (None, None) => {
             let _ = writeln!(text, "{DIM}nothing to do{DIM:#}");
         }
+    }
+    if holds {
+        let missing = match words(&status["absent"]) {
+            names if names.is_empty() => "until its superiors are seen".to_owned(),
+            names => format!("{} is not there", names.replace(' ', " and ")),
+        };
+        let _ = writeln!(text, "         {ASIDE}‖ holding: {missing}{ASIDE:#}");
     }
     if with_plans {
         text.push_str(&of_goal(views, &running["id"]));
@@ -287,4 +374,39 @@ fn list(value: &Value) -> &[Value] {
 fn words(value: &Value) -> String {
     let words: Vec<&str> = list(value).iter().filter_map(Value::as_str).collect();
     words.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plain(agents: &Value, processes: &Value) -> String {
+        let agents = agents.as_object().unwrap();
+        anstream::adapter::strip_str(&for_people(agents, processes, false)).to_string()
+    }
+
+    #[test]
+    fn a_role_that_is_down_is_shown_with_its_next_start_and_how_it_ended() {
+        let processes = json!({ "child": {
+            "state": "down", "restarts": 3, "next_start_s": 0.4,
+            "last_exit": "signal: 9 (SIGKILL)", "last_exit_unix_s": 0.0,
+        }});
+        let text = plain(&json!({ "child": null }), &processes);
+        assert!(text.contains("is down; next start in 0.4 s"), "{text}");
+        assert!(text.contains("started again 3 times"), "{text}");
+        assert!(text.contains("signal: 9 (SIGKILL)"), "{text}");
+    }
+
+    #[test]
+    fn without_anybody_who_looks_after_it_a_role_that_is_gone_is_shown_as_gone() {
+        let text = plain(&json!({ "parent": null }), &Value::Null);
+        assert_eq!(text, "parent   is gone\n");
+    }
+
+    #[test]
+    fn an_agent_that_holds_says_for_whom_it_waits() {
+        let status = json!({ "holds": true, "absent": ["parent"] });
+        let text = plain(&json!({ "child": { "status": status } }), &Value::Null);
+        assert!(text.contains("holding: parent is not there"), "{text}");
+    }
 }

@@ -44,6 +44,9 @@ pub(crate) async fn run(args: UpArgs) -> Result<Exit, Failure> {
         listen: args.listen,
         connect: args.connect,
         zenoh_config: args.zenoh_config,
+        state: args.state,
+        world_elsewhere: args.no_world,
+        hang_limit: args.hang_limit,
     };
     let performance = Performance {
         scenario,
@@ -61,10 +64,8 @@ pub(super) async fn perform(
     performance: Performance,
 ) -> Result<Exit, Failure> {
     let mut interrupted = std::pin::pin!(agent_link::interrupted());
-    let mut robot = tokio::select! {
-        robot = Robot::start(setup) => robot?,
-        // The roles see the end of their input and end.
-        () = &mut interrupted => return Ok(Exit::Done),
+    let Some(mut robot) = Robot::start(setup, &mut interrupted).await? else {
+        return Ok(Exit::Done);
     };
     let client = Client::new(&robot.session, &robot.keys);
     let ready = robot.clock.now();
@@ -117,8 +118,8 @@ fn judge(ending: Ending) -> (Exit, Vec<String>) {
         Ending::Interrupted => (Exit::Done, Vec::new()),
         Ending::Over(failed) if failed.is_empty() => (Exit::Done, failed),
         Ending::Over(failed) => (Exit::Failed, failed),
-        Ending::Died(role, how) => {
-            let what = format!("the {role} has died ({how}), so everything was ended");
+        Ending::GivenUp(role, how) => {
+            let what = format!("the {role} ends whenever it is started: {how}");
             (Exit::Failed, vec![what])
         }
     }

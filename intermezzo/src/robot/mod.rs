@@ -1,8 +1,13 @@
 //! A robot of this machine: the router in this process, and its roles as processes of their own.
 
 mod alive;
+mod back_off;
 mod role_process;
+mod state_dir;
+mod supervisor;
+mod watched;
 
+use std::collections::{BTreeMap, VecDeque};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -14,11 +19,18 @@ use tokio::sync::mpsc;
 
 use crate::exit::Failure;
 
-use role_process::RoleProcess;
-pub use role_process::{RoleKind, RoleNews};
+pub use role_process::RoleKind;
+use state_dir::StateDir;
+use supervisor::Supervisor;
+
+/// All roles together; a busy machine may take its time to start four processes.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A world that has been started answers within this, unless something is wrong.
 const PATIENCE_WITH_THE_CLOCK: Duration = Duration::from_secs(10);
+
+/// A role that has not answered for so long is killed, unless the user says otherwise.
+pub const HANG_LIMIT: Duration = Duration::from_secs(10);
 
 /// What a robot is started with.
 #[derive(Clone, Debug)]
@@ -41,6 +53,89 @@ pub struct Setup {
     pub connect: Vec<String>,
     /// Zenoh settings.
     pub zenoh_config: Option<PathBuf>,
+    /// Where the roles keep their journals; `None` for a temporary directory that is gone at the end.
+    pub state: Option<PathBuf>,
+    /// Whether the world is started by others.
+    pub world_elsewhere: bool,
+    /// A role that has not answered for so long is killed and started again.
+    pub hang_limit: Duration,
+}
+
+/// What becomes of the roles.
+#[derive(Clone, Debug)]
+pub enum RoleNews {
+    /// A line on the standard error of one.
+    Said(RoleKind, String),
+    /// It is there.
+    Ready {
+        /// Which.
+        role: RoleKind,
+        /// Its process.
+        pid: u32,
+        /// How often it was started again.
+        restarts: u32,
+        /// How long it was missing, unless this is its first start.
+        after: Option<Duration>,
+    },
+    /// Its process has ended.
+    Ended {
+        /// Which.
+        role: RoleKind,
+        /// The process that has ended.
+        pid: u32,
+        /// In words.
+        how: String,
+        /// When it is started again.
+        next_in: Duration,
+    },
+    /// Its process runs, and does not answer.
+    Silent {
+        /// Which.
+        role: RoleKind,
+        /// Its process.
+        pid: u32,
+    },
+    /// It answers again.
+    Answers {
+        /// Which.
+        role: RoleKind,
+        /// Its process.
+        pid: u32,
+    },
+    /// It was killed, since it did not answer for so long.
+    Killed {
+        /// Which.
+        role: RoleKind,
+        /// Its process.
+        pid: u32,
+        /// How long.
+        after: Duration,
+    },
+    /// It ends by itself whenever it is started.
+    GivenUp {
+        /// Which.
+        role: RoleKind,
+        /// How its last process ended, and what that said.
+        how: String,
+    },
+}
+
+/// [`RoleNews`], in the order in which it comes.
+#[derive(Debug)]
+pub struct News {
+    /// What happened before all were ready.
+    earlier: VecDeque<RoleNews>,
+    queue: mpsc::UnboundedReceiver<RoleNews>,
+}
+
+impl News {
+    /// The next. `None` once there can be no more.
+    pub async fn next(&mut self) -> Option<RoleNews> {
+        match self.earlier.pop_front() {
+            Some(news) => Some(news),
+            None => self.queue.recv().await,
+        }
+    }
 }
 
 /// A robot that runs.
@@ -54,25 +149,32 @@ pub struct Robot {
     pub clock: Clock,
     /// Where others reach it.
     pub endpoint: String,
-    /// What its processes say and how they end.
-    pub news: mpsc::UnboundedReceiver<RoleNews>,
-    roles: Vec<RoleProcess>,
+    /// The process of each role when all were ready.
+    pub processes: BTreeMap<RoleKind, u32>,
+    /// What becomes of its roles.
+    pub news: News,
+    supervisor: Supervisor,
     _entry: Entry,
 }
 
 impl Robot {
-    /// Starts all roles and returns once they are ready to take goals.
+    /// Starts all roles and returns once they are ready to take goals. `None` if it was `interrupted`
+    /// before that.
     ///
     /// # Errors
-    /// If the name is taken, a port cannot be had, or a role does not come up. Nothing is left
-    /// running then.
-    pub async fn start(setup: &Setup) -> Result<Self, Failure> {
+    /// If the name or the state is taken, a port cannot be had, or a role does not come up. Nothing is
+    /// left running then.
+    pub async fn start(
+        setup: &Setup,
+        interrupted: impl Future<Output = ()>,
+    ) -> Result<Option<Self>, Failure> {
         let keys = Keys::new(&setup.robot).map_err(Failure::bad_input)?;
         let registry = Registry::of_user().map_err(unregistered)?;
         let running = registry.running().map_err(unregistered)?;
         if let Some(same) = running.into_iter().find(|one| one.robot == setup.robot) {
             return Err(unregistered(RegistryError::Taken(same)));
         }
+        let state = StateDir::take(setup.state.as_deref(), &setup.robot).await?;
         let role = if setup.connect.is_empty() {
             Role::Router {
                 listen: setup.listen.clone(),
@@ -90,13 +192,20 @@ impl Robot {
         } else {
             setup.connect.clone()
         };
-        match Self::with_session(setup, &session, keys, &registry, endpoints).await {
-            Ok(robot) => Ok(robot),
-            Err(failure) => {
-                session::close(session).await;
-                Err(failure)
-            }
+        let started = Self::with_session(
+            setup,
+            &session,
+            keys,
+            &registry,
+            endpoints,
+            state,
+            interrupted,
+        );
+        let started = started.await;
+        if !matches!(started, Ok(Some(_))) {
+            session::close(session).await;
         }
+        started
     }
 
     async fn with_session(
@@ -105,7 +214,9 @@ impl Robot {
         keys: Keys,
         registry: &Registry,
         endpoints: Vec<String>,
-    ) -> Result<Self, Failure> {
+        state: StateDir,
+        interrupted: impl Future<Output = ()>,
+    ) -> Result<Option<Self>, Failure> {
         let endpoint = endpoints
             .first()
             .cloned()
@@ -114,68 +225,96 @@ impl Robot {
             .enter(&setup.robot, &endpoint)
             .map_err(unregistered)?;
         let (tell, mut news) = mpsc::unbounded_channel();
-        let mut roles = Vec::new();
-        for kind in RoleKind::ALL {
-            roles.push(RoleProcess::start(kind, setup, &endpoints, &tell)?);
-        }
+        let supervisor = Supervisor::start(setup, state, session, &keys, endpoints, tell).await?;
+        let mut earlier = VecDeque::new();
         let ready = async {
-            alive::until_all_are_there(session, &keys).await?;
+            let processes = all_ready(setup, &mut news, &mut earlier).await?;
             let clock = Clock::of_world(session, &keys, PATIENCE_WITH_THE_CLOCK)
                 .await
                 .map_err(Failure::failed)?;
             alive::until_it_knows_where_it_stands(session, &keys).await?;
-            Ok(clock)
+            Ok((clock, processes))
         };
         let ready = tokio::select! {
-            ready = ready => ready,
-            failure = first_end(&mut news) => Err(failure),
+            ready = ready => ready.map(Some),
+            () = interrupted => Ok(None),
         };
         match ready {
-            Ok(clock) => Ok(Self {
+            Ok(Some((clock, processes))) => Ok(Some(Self {
                 session: session.clone(),
                 keys,
                 clock,
                 endpoint,
-                news,
-                roles,
+                processes,
+                news: News {
+                    earlier,
+                    queue: news,
+                },
+                supervisor,
                 _entry: entry,
-            }),
+            })),
+            Ok(None) => {
+                supervisor.end().await;
+                Ok(None)
+            }
             Err(failure) => {
-                role_process::end_all(roles).await;
+                supervisor.end().await;
                 Err(failure)
             }
         }
     }
 
-    /// The process of each role, for people who want to see what becomes of it.
-    pub fn processes(&self) -> impl Iterator<Item = (RoleKind, u32)> {
-        self.roles.iter().map(|role| (role.kind, role.pid))
-    }
-
     /// Ends all roles, and returns when they have ended.
     pub async fn end(self) {
-        role_process::end_all(self.roles).await;
+        self.supervisor.end().await;
         session::close(self.session).await;
     }
 }
 
-/// Waits for a role that ends before all are there, and says what it said.
-async fn first_end(news: &mut mpsc::UnboundedReceiver<RoleNews>) -> Failure {
-    let mut said = Vec::new();
-    while let Some(one) = news.recv().await {
-        match one {
-            RoleNews::Said(kind, line) => said.push(format!("{kind}: {line}")),
-            RoleNews::Ended(kind, how) => {
-                let mut what = format!("the {kind} did not start ({how})");
-                for line in said {
-                    what.push('\n');
-                    what.push_str(&line);
+/// Waits until all roles are there, and returns their processes. What else happens is for later.
+async fn all_ready(
+    setup: &Setup,
+    news: &mut mpsc::UnboundedReceiver<RoleNews>,
+    earlier: &mut VecDeque<RoleNews>,
+) -> Result<BTreeMap<RoleKind, u32>, Failure> {
+    let all = RoleKind::ALL.len() - usize::from(setup.world_elsewhere);
+    let mut processes = BTreeMap::new();
+    let coming = async {
+        while processes.len() < all {
+            let Some(one) = news.recv().await else {
+                return Err(Failure::failed("no role has started"));
+            };
+            match &one {
+                RoleNews::Ready {
+                    role, pid, after, ..
+                } => {
+                    processes.insert(*role, *pid);
+                    if after.is_none() {
+                        // That all have started is told at once.
+                        continue;
+                    }
                 }
-                return Failure::failed(what);
+                RoleNews::Ended { role, .. } => {
+                    processes.remove(role);
+                }
+                RoleNews::GivenUp { role, how } => {
+                    return Err(Failure::failed(format_args!(
+                        "the {role} did not start ({how})"
+                    )));
+                }
+                _ => {}
             }
+            earlier.push_back(one);
         }
+        Ok(processes)
+    };
+    match tokio::time::timeout(PATIENCE, coming).await {
+        Ok(processes) => processes,
+        Err(_) => Err(Failure::failed(format_args!(
+            "not every role has come up within {PATIENCE:?}"
+        ))
+        .advice("try again with RUST_LOG=info to see what they do")),
     }
-    Failure::failed("no role has started")
 }
 
 fn not_opened(error: &SessionError, setup: &Setup) -> Failure {

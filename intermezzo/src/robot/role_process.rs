@@ -1,22 +1,24 @@
 //! One role as a process.
 
 use std::fmt;
+use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
 
 use tokio::io::{AsyncBufReadExt, BufReader};
 use tokio::process::{Child, ChildStdin, Command};
-use tokio::sync::{mpsc, oneshot};
+use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 
 use super::Setup;
+use super::back_off::End;
 use crate::exit::Failure;
 
 /// A role that has been told to end may take this long to say good-bye.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// The roles of a robot.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
 pub enum RoleKind {
     /// Doors, body, clock.
     World,
@@ -31,6 +33,11 @@ pub enum RoleKind {
 impl RoleKind {
     /// All of them, from below.
     pub const ALL: [Self; 4] = [Self::World, Self::Executor, Self::Child, Self::Parent];
+
+    /// The one of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
 
     /// Its name, as in the keys.
     pub fn name(self) -> &'static str {
@@ -49,24 +56,31 @@ impl fmt::Display for RoleKind {
     }
 }
 
-/// What a role's process does beside its role.
+/// What a process does beside its role.
 #[derive(Clone, Debug)]
-pub enum RoleNews {
+pub(super) enum ProcessNews {
     /// A line on its standard error.
     Said(RoleKind, String),
-    /// It has ended, in words how.
-    Ended(RoleKind, String),
+    /// It has ended: how, and in words.
+    Ended(RoleKind, End, String),
+}
+
+/// What a process is told.
+#[derive(Clone, Copy, Debug)]
+enum Order {
+    /// To end; it is killed if it does not within [`PATIENCE`].
+    End,
+    /// It is killed.
+    Kill,
 }
 
 /// A role's process. It ends when this is dropped, and when this process dies: the process sees
 /// the end of its standard input.
 #[derive(Debug)]
 pub(super) struct RoleProcess {
-    pub(super) kind: RoleKind,
     pub(super) pid: u32,
     stdin: Option<ChildStdin>,
-    /// Tells the watching task that the end is wanted.
-    ending: Option<oneshot::Sender<()>>,
+    orders: mpsc::UnboundedSender<Order>,
     watching: JoinHandle<()>,
 }
 
@@ -74,14 +88,16 @@ impl RoleProcess {
     pub(super) fn start(
         kind: RoleKind,
         setup: &Setup,
+        state: &Path,
         endpoints: &[String],
-        news: &mpsc::UnboundedSender<RoleNews>,
+        news: &mpsc::UnboundedSender<ProcessNews>,
     ) -> Result<Self, Failure> {
         let failed = |error| Failure::failed(format_args!("cannot start the {kind}: {error}"));
         let mut command = Command::new(std::env::current_exe().map_err(failed)?);
         command
             .args(["role", kind.name(), "--until-stdin-ends"])
             .args(["--robot", &setup.robot, "--start", &setup.start]);
+        let _ = state;
         for endpoint in endpoints {
             command.args(["--connect", endpoint]);
         }
@@ -114,24 +130,32 @@ impl RoleProcess {
         #[cfg(unix)]
         command.process_group(0);
         let mut child = command.spawn().map_err(failed)?;
-        let (ending, wanted) = oneshot::channel();
+        let (orders, ordered) = mpsc::unbounded_channel();
         Ok(Self {
-            kind,
             // A process that has just been started has not been waited for.
             pid: child.id().unwrap_or_default(),
             stdin: child.stdin.take(),
-            ending: Some(ending),
-            watching: tokio::spawn(watch(kind, child, news.clone(), wanted)),
+            orders,
+            watching: tokio::spawn(watch(kind, child, news.clone(), ordered)),
         })
     }
 
-    /// Tells it to end.
-    fn tell_to_end(&mut self) {
+    /// Tells it to end. Its end is told as news.
+    pub(super) fn tell_to_end(&mut self) {
         self.stdin = None;
-        if let Some(ending) = self.ending.take() {
-            // If nobody listens any more, it has ended.
-            let _ = ending.send(());
-        }
+        // If nobody listens any more, it has ended.
+        let _ = self.orders.send(Order::End);
+    }
+
+    /// Kills it, since it does not answer. Its end is told as news.
+    pub(super) fn kill(&self) {
+        let _ = self.orders.send(Order::Kill);
+    }
+
+    /// Returns when it has ended.
+    pub(super) async fn ended(self) {
+        // The task does not panic; if it was cancelled, the runtime is going down.
+        let _ = self.watching.await;
     }
 }
 
@@ -139,46 +163,56 @@ impl RoleProcess {
 async fn watch(
     kind: RoleKind,
     mut child: Child,
-    news: mpsc::UnboundedSender<RoleNews>,
-    wanted: oneshot::Receiver<()>,
+    news: mpsc::UnboundedSender<ProcessNews>,
+    orders: mpsc::UnboundedReceiver<Order>,
 ) {
     let stderr = child.stderr.take();
     let saying = async {
         let Some(stderr) = stderr else { return };
         let mut lines = BufReader::new(stderr).lines();
         while let Ok(Some(line)) = lines.next_line().await {
-            let _ = news.send(RoleNews::Said(kind, line));
+            let _ = news.send(ProcessNews::Said(kind, line));
         }
     };
     let ended = async {
-        let patience = async {
-            // The sender is dropped with the process's owner, which wants the end just as well.
-            let _ = wanted.await;
-            tokio::time::sleep(PATIENCE).await;
+        let status = tokio::select! {
+            status = child.wait() => Some(status),
+            () = until_it_is_to_be_killed(orders) => None,
         };
-        tokio::select! {
-            status = child.wait() => match status {
-                Ok(status) => status.to_string(),
-                Err(error) => format!("lost sight of it: {error}"),
-            },
-            () = patience => {
-                let _ = child.kill().await;
-                format!("killed, since it did not end within {PATIENCE:?}")
+        let (status, killed) = match status {
+            Some(status) => (status, false),
+            None => {
+                // By its id, which is its own as long as it has not been waited for.
+                let _ = child.start_kill();
+                (child.wait().await, true)
             }
+        };
+        match status {
+            Ok(_) if killed => (End::Killed, "killed, since it did not answer".to_owned()),
+            Ok(status) if status.code().is_some() => (End::Own, status.to_string()),
+            Ok(status) => (End::Killed, status.to_string()),
+            Err(error) => (End::Killed, format!("lost sight of it: {error}")),
         }
     };
     // Its last words come before the news of its end.
-    let ((), how) = tokio::join!(saying, ended);
-    let _ = news.send(RoleNews::Ended(kind, how));
+    let ((), (end, how)) = tokio::join!(saying, ended);
+    let _ = news.send(ProcessNews::Ended(kind, end, how));
 }
 
-/// Ends all of them, and returns when they have ended.
-pub(super) async fn end_all(mut roles: Vec<RoleProcess>) {
-    for role in &mut roles {
-        role.tell_to_end();
-    }
-    for role in roles {
-        // The task does not panic; if it was cancelled, the runtime is going down.
-        let _ = role.watching.await;
+async fn until_it_is_to_be_killed(mut orders: mpsc::UnboundedReceiver<Order>) {
+    match orders.recv().await {
+        Some(Order::Kill) => {}
+        // The sender is dropped with the process's owner, which wants the end just as well.
+        Some(Order::End) | None => {
+            let killed = async {
+                while let Some(order) = orders.recv().await {
+                    if matches!(order, Order::Kill) {
+                        return;
+                    }
+                }
+                std::future::pending().await
+            };
+            let _ = tokio::time::timeout(PATIENCE, killed).await;
+        }
     }
 }

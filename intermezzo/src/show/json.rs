@@ -6,7 +6,7 @@ use agent_link::wire;
 use serde_json::{Value, json};
 
 use super::Screen;
-use crate::robot::{Robot, RoleKind};
+use crate::robot::{Robot, RoleKind, RoleNews};
 use crate::scenario::{Told, What};
 
 /// Writes the events as the agents publish them, and between them, as agent `intermezzo`, what
@@ -17,9 +17,8 @@ pub(crate) struct JsonLines;
 impl JsonLines {
     /// The robot takes goals from now on.
     pub(crate) fn ready(&self, robot: &Robot) {
-        let processes = robot
-            .processes()
-            .map(|(role, pid)| (role.to_string(), json!(pid)));
+        let processes = robot.processes.iter();
+        let processes = processes.map(|(role, pid)| (role.to_string(), json!(pid)));
         line(
             robot.clock.now(),
             "ready",
@@ -75,9 +74,53 @@ impl Screen for JsonLines {
         line(at, name, body);
     }
 
-    fn said(&mut self, role: RoleKind, line: &str) {
-        anstream::eprintln!("{role}: {line}");
+    fn role(&mut self, at: Time, news: &RoleNews) {
+        let (name, body) = match news {
+            RoleNews::Said(role, line) => {
+                anstream::eprintln!("{role}: {line}");
+                return;
+            }
+            RoleNews::Ready {
+                role,
+                pid,
+                restarts,
+                after,
+            } => {
+                let missing_s = after.map(|after| after.as_secs_f64());
+                let body = json!({ "process": pid, "restarts": restarts, "missing_s": missing_s });
+                ("role_ready", of_role(*role, body))
+            }
+            RoleNews::Ended {
+                role,
+                pid,
+                how,
+                next_in,
+            } => {
+                let next_s = next_in.as_secs_f64();
+                let body = json!({ "process": pid, "how": how, "next_start_s": next_s });
+                ("role_ended", of_role(*role, body))
+            }
+            RoleNews::Silent { role, pid } => {
+                ("role_silent", of_role(*role, json!({ "process": pid })))
+            }
+            RoleNews::Answers { role, pid } => {
+                ("role_answers", of_role(*role, json!({ "process": pid })))
+            }
+            RoleNews::Killed { role, pid, after } => {
+                let body = json!({ "process": pid, "silent_s": after.as_secs_f64() });
+                ("role_killed", of_role(*role, body))
+            }
+            RoleNews::GivenUp { role, how } => {
+                ("role_given_up", of_role(*role, json!({ "how": how })))
+            }
+        };
+        line(at, name, body);
     }
+}
+
+fn of_role(role: RoleKind, mut body: Value) -> Value {
+    body["role"] = json!(role.name());
+    body
 }
 
 /// A line of this command's own, of the same shape as an event.

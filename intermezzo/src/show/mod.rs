@@ -32,8 +32,8 @@ pub(crate) trait Screen {
     fn told(&mut self, at: Time, told: &Told);
     /// The robot was seen.
     fn saw(&mut self, _snapshot: &Snapshot) {}
-    /// A role has written a line to its standard error.
-    fn said(&mut self, role: RoleKind, line: &str);
+    /// Something has become of a role's process.
+    fn role(&mut self, at: Time, news: &RoleNews);
 }
 
 /// Why there is nothing more to show.
@@ -43,8 +43,8 @@ pub(crate) enum Ending {
     Interrupted,
     /// The story is over; what went otherwise than it should.
     Over(Vec<String>),
-    /// A role has died.
-    Died(RoleKind, String),
+    /// A role ends whenever it is started: how, and what it says.
+    GivenUp(RoleKind, String),
 }
 
 /// What else there is to a show.
@@ -86,10 +86,10 @@ pub(crate) async fn show(
         let told = tokio::select! {
             biased;
             () = &mut *interrupted => return Ok(Ending::Interrupted),
-            Some(news) = robot.news.recv() => {
-                match news {
-                    RoleNews::Said(role, line) => screen.said(role, &line),
-                    RoleNews::Ended(role, how) => return Ok(Ending::Died(role, how)),
+            Some(news) = robot.news.next() => {
+                screen.role(robot.clock.now(), &news);
+                if let RoleNews::GivenUp { role, how } = news {
+                    return Ok(Ending::GivenUp(role, how));
                 }
                 None
             }

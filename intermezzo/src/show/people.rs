@@ -10,8 +10,8 @@ use anstyle::{AnsiColor, Style};
 use super::Screen;
 use super::progress::Progress;
 use super::summary::Ledger;
-use super::words::{Line, Observable, of_child, of_parent};
-use crate::robot::RoleKind;
+use super::words::{Line, Observable, of_child, of_parent, of_role};
+use crate::robot::RoleNews;
 use crate::scenario::{Told, What};
 use crate::snapshot::Snapshot;
 use crate::style::{BAD, BOLD, DIM};
@@ -282,8 +282,14 @@ impl Screen for ForPeople {
         }
     }
 
-    fn said(&mut self, role: RoleKind, line: &str) {
-        self.print(format!("{DIM}{role}: {line}{DIM:#}"));
+    fn role(&mut self, at: Time, news: &RoleNews) {
+        match news {
+            RoleNews::Said(role, line) => self.print(format!("{DIM}{role}: {line}{DIM:#}")),
+            news => {
+                let bars = self.bars(self.stack.len());
+                self.line(at, "", &bars, 0, &of_role(news));
+            }
+        }
     }
 }
 

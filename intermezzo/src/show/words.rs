@@ -6,6 +6,7 @@ use agent_core::model::{Action, Cost, FactChange, Symbol, Task};
 use agent_core::protocol::{Happening, Resumption, Urgency};
 use anstyle::Style;
 
+use crate::robot::RoleNews;
 use crate::style::{AGAIN, ASIDE, BAD, DIM, GOOD, URGENT};
 
 /// A line about an event.
@@ -170,6 +171,53 @@ pub(super) fn of_child(task: &str, what: &Happening, spot: &str) -> Option<Line>
         // Its superior tells the rest, and an action that just goes well needs no words.
         _ => return None,
     })
+}
+
+/// What has become of a role's process.
+pub(super) fn of_role(news: &RoleNews) -> Line {
+    match news {
+        RoleNews::Said(role, words) => line(' ', DIM, format!("{role}: {words}")),
+        RoleNews::Ready { role, after, .. } => match after {
+            Some(after) => line(
+                'i',
+                AGAIN,
+                format!(
+                    "the {role} is there again after {:.1} s",
+                    after.as_secs_f64()
+                ),
+            ),
+            None => line('i', DIM, format!("the {role} is there")),
+        },
+        RoleNews::Ended {
+            role, how, next_in, ..
+        } => line(
+            '!',
+            BAD,
+            format!(
+                "the {role} has died ({how}); it is started again in {:.1} s",
+                next_in.as_secs_f64()
+            ),
+        ),
+        RoleNews::Silent { role, pid } => line(
+            '!',
+            BAD,
+            format!("the {role} does not answer (process {pid})"),
+        ),
+        RoleNews::Answers { role, .. } => line('i', AGAIN, format!("the {role} answers again")),
+        RoleNews::Killed { role, pid, after } => line(
+            '!',
+            BAD,
+            format!(
+                "the {role} has not answered for {:.0} s: its process {pid} is killed",
+                after.as_secs_f64()
+            ),
+        ),
+        RoleNews::GivenUp { role, .. } => line(
+            '✗',
+            BAD,
+            format!("the {role} ends whenever it is started, so everything is ended"),
+        ),
+    }
 }
 
 /// The words of decision 12.

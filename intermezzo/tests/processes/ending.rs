@@ -1,6 +1,6 @@
 //! How robots end: nothing is left of them.
 
-use nix::sys::signal::{Signal, kill};
+use nix::sys::signal::Signal;
 
 use crate::harness::User;
 
@@ -34,31 +34,6 @@ async fn when_up_is_killed_its_roles_end_by_themselves() {
     up.assert_nobody_is_left().await;
     let said = user.run(&["goal", "(go n4)"]).await;
     assert_eq!(said.code, Some(3), "{said:?}");
-}
-
-#[tokio::test(flavor = "multi_thread")]
-async fn a_role_that_dies_is_named_and_everything_ends() {
-    let user = User::new().await;
-    let mut up = user.up(&[]).await;
-    let waiting = user.run(&["goal", "(go n40)", "--wait"]);
-    let dying = async {
-        up.until_doing("arc5").await;
-        // In the order of the names: child, executor, parent, world.
-        kill(up.processes[2], Signal::SIGKILL).unwrap();
-        up.read_to_the_end().await
-    };
-    let (said, status) = tokio::join!(waiting, dying);
-    assert_eq!(status.code(), Some(1));
-    assert_eq!(said.code, Some(3), "{said:?}");
-    let end = up.story.last().unwrap();
-    assert!(
-        end["failed"][0]
-            .as_str()
-            .unwrap()
-            .contains("the parent has died"),
-        "{end}"
-    );
-    up.assert_nobody_is_left().await;
 }
 
 #[tokio::test(flavor = "multi_thread")]

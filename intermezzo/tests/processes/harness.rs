@@ -1,5 +1,6 @@
 //! Running the command, and reading what it says.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::process::{ExitStatus, Stdio};
 use std::time::Duration;
 
@@ -96,16 +97,15 @@ impl User {
             child,
             lines,
             story: Vec::new(),
-            processes: Vec::new(),
+            processes: BTreeMap::new(),
+            all_processes: BTreeSet::new(),
             endpoint: String::new(),
         };
         let ready = up.until("ready", |event| event["event"] == "ready").await;
         up.endpoint = ready["endpoint"].as_str().unwrap().to_owned();
-        let processes = ready["processes"].as_object().unwrap().values();
-        up.processes = processes
-            .map(|pid| Pid::from_raw(pid.as_i64().unwrap().try_into().unwrap()))
-            .collect();
-        assert_eq!(up.processes.len(), 4);
+        for (role, process) in ready["processes"].as_object().unwrap() {
+            up.runs(role, process);
+        }
         up
     }
 }
@@ -116,8 +116,10 @@ pub struct Up {
     lines: Lines<BufReader<ChildStdout>>,
     /// All that was told so far.
     pub story: Vec<Value>,
-    /// Of the roles.
-    pub processes: Vec<Pid>,
+    /// Of the roles, as they are now, by name.
+    pub processes: BTreeMap<String, Pid>,
+    /// Of all roles that there ever were.
+    all_processes: BTreeSet<Pid>,
     pub endpoint: String,
 }
 
@@ -127,6 +129,9 @@ impl Up {
         let line = timeout(PATIENCE, self.lines.next_line()).await;
         let line = line.unwrap_or_else(|_| panic!("nothing more is told:\n{}", self.told()));
         let event: Value = serde_json::from_str(&line.unwrap()?).unwrap();
+        if event["event"] == "role_ready" {
+            self.runs(event["role"].as_str().unwrap(), &event["process"]);
+        }
         self.story.push(event.clone());
         Some(event)
     }
@@ -140,6 +145,26 @@ impl Up {
                 None => panic!("it ended before {what}:\n{}", self.told()),
             }
         }
+    }
+
+    /// A role has this process from now on.
+    fn runs(&mut self, role: &str, process: &Value) {
+        let process = Pid::from_raw(process.as_i64().unwrap().try_into().unwrap());
+        self.processes.insert(role.to_owned(), process);
+        self.all_processes.insert(process);
+    }
+
+    /// Sends a signal to the process of a role.
+    pub fn signal(&self, role: &str, signal: Signal) {
+        kill(self.processes[role], signal).unwrap();
+    }
+
+    /// Reads on until the supervisor tells that of a role.
+    pub async fn until_role(&mut self, role: &str, event: &str) -> Value {
+        self.until(&format!("{event} of the {role}"), |told| {
+            told["agent"] == "intermezzo" && told["role"] == role && told["event"] == event
+        })
+        .await
     }
 
     /// Reads on until the parent tells that of a goal.
@@ -191,7 +216,7 @@ impl Up {
     pub async fn assert_nobody_is_left(&self) {
         let gone = async {
             while self
-                .processes
+                .all_processes
                 .iter()
                 .any(|pid| kill(*pid, None) != Err(Errno::ESRCH))
             {
@@ -199,7 +224,7 @@ impl Up {
             }
         };
         let gone = timeout(Duration::from_secs(20), gone).await;
-        assert!(gone.is_ok(), "some of {:?} are left", self.processes);
+        assert!(gone.is_ok(), "some of {:?} are left", self.all_processes);
     }
 
     fn told(&self) -> String {

@@ -8,5 +8,6 @@ mod ending;
 mod goals;
 mod refusals;
 mod side_by_side;
+mod supervision;
 mod typing;
 mod zenoh_command;
