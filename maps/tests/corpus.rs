@@ -1,4 +1,4 @@
-//! Every execution model that fuzzing has kept is read again.
+//! Every execution model and every map that fuzzing has kept is read again.
 #![expect(
     clippy::print_stderr,
     reason = "says which text it was that went wrong"
@@ -27,4 +27,24 @@ fn every_execution_model_of_the_corpus_is_read_or_refused() {
         }
     }
     assert!(texts > 5, "only {texts} texts");
+}
+
+#[test]
+fn every_map_of_the_corpus_is_read_or_refused() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus/map");
+    let (mut texts, mut in_order) = (0, 0);
+    for entry in fs::read_dir(folder).expect("the corpus is there") {
+        let path = entry.expect("it can be read").path();
+        eprintln!("{}", path.display());
+        let bytes = fs::read(&path).expect("it can be read");
+        texts += 1;
+        match maps::Site::from_text("map.geojson", &String::from_utf8_lossy(&bytes)) {
+            Ok(site) => {
+                in_order += 1;
+                let _ = maps::area_level(&site);
+            }
+            Err(findings) => assert!(!findings.is_empty(), "refused without a finding"),
+        }
+    }
+    assert!(texts > 5 && in_order > 0, "{in_order} of {texts} in order");
 }
