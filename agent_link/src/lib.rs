@@ -59,7 +59,6 @@ mod incoming;
 mod inspect;
 mod inspect_agent;
 mod inspect_alternatives;
-pub mod journal;
 mod keys;
 mod link;
 mod mailbox;
@@ -75,6 +74,7 @@ pub mod session;
 pub mod wire;
 mod wiring;
 
+pub use agent_journal as journal;
 pub use client::{Client, ClientError, Events};
 pub use clock::{Clock, ClockError, ClockService, epoch_now};
 pub use driver::{drive, drive_agent};

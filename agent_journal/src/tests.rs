@@ -1,3 +1,5 @@
+#![allow(clippy::panic)]
+
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -91,6 +93,16 @@ fn what_was_written_is_there_after_a_process_that_died() {
     fs::copy(&place.path, &died.path).unwrap();
     let (_, rows) = Journal::open(&died.path, whose()).unwrap();
     assert_eq!(rows, Rows::from([("s/a".into(), b"one".to_vec())]));
+}
+
+#[test]
+fn a_journal_whose_rows_make_no_sense_to_their_reader_is_left_untouched() {
+    let place = place();
+    written(&place);
+    let before = fs::read(&place.path).unwrap();
+    let (journal, _) = Journal::open(&place.path, whose()).unwrap();
+    drop(journal);
+    assert!(fs::read(&place.path).unwrap() == before);
 }
 
 #[test]
@@ -199,7 +211,8 @@ fn a_changed_byte_is_noticed_or_of_no_consequence() {
         fs::write(&place.path, &bytes).unwrap();
         match Journal::open(&place.path, whose()) {
             Ok((_, rows)) => {
-                assert_eq!(rows, Rows::from([("s/a".into(), b"one".to_vec())]), "{at}");
+                let expected = Rows::from([("s/a".into(), b"one".to_vec())]);
+                assert_eq!(rows, expected, "{at}");
             }
             Err(_) => {
                 assert!(fs::read(&place.path).unwrap() == bytes, "{at}: written to");
@@ -241,8 +254,12 @@ fn a_file_that_was_large_once_is_small_after_the_next_start() {
     fs::create_dir_all(died.path.parent().unwrap()).unwrap();
     fs::copy(&place.path, &died.path).unwrap();
     assert!(fs::metadata(&died.path).unwrap().len() > WORTH_REWRITING_BYTES);
-    let (_, rows) = Journal::open(&died.path, whose()).unwrap();
+    let (mut journal, rows) = Journal::open(&died.path, whose()).unwrap();
     assert_eq!(rows.len(), 1);
+    journal.commit(&[row("s/b", "two")]).unwrap();
+    drop(journal);
+    let (_, rows) = Journal::open(&died.path, whose()).unwrap();
+    assert_eq!(rows.len(), 2);
     assert!(fs::metadata(&died.path).unwrap().len() < WORTH_REWRITING_BYTES);
 }
 
@@ -328,7 +345,9 @@ fn what_was_not_written_is_written_with_the_next_commit() {
     journal.commit(&[row("s/c", "three")]).unwrap();
     // What an error has left of a file is not trusted.
     assert_eq!(disk.begun_anew.load(Ordering::SeqCst), 1 + 2 + 1);
-    let database = journal.database.as_ref().unwrap();
+    let Kept::Open(database) = &journal.database else {
+        panic!("it has just been written");
+    };
     let rows = examine::rows(database).unwrap();
     assert_eq!(rows, journal.rows);
     assert_eq!(rows.len(), 3);

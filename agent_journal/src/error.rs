@@ -22,7 +22,7 @@ pub enum JournalError {
         why: String,
     },
     /// Cut short, or not what was written.
-    #[error("the journal {place} is damaged ({why}); put back a copy of it, or {MOVE_AWAY}")]
+    #[error("the journal {place} is damaged ({why}); {MOVE_AWAY}")]
     Damaged {
         /// Which.
         place: String,

@@ -5,11 +5,13 @@
 //! commits trust a checksum to tell whether the last one is whole.
 //!
 //! A journal that is not ours, not whole or not understood is never written to: it is looked at
-//! through an [`Overlay`](overlay) that keeps all changes in memory.
+//! through an overlay that keeps all changes in memory.
 //!
 //! After an error nothing is known of what the system has kept of a file, not even when a later call
 //! succeeds (a failed `fsync` is reported once). So the next attempt writes everything into a new
 //! file, which takes the old one's place.
+
+#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod disk;
 mod error;
@@ -73,12 +75,22 @@ pub struct Journal {
     whose: Identity,
     /// Everything that should be in it.
     rows: Rows,
-    /// `None` after an error: it is to be written anew.
-    database: Option<Database>,
+    database: Kept,
+}
+
+/// How a journal is written to.
+#[derive(Debug)]
+enum Kept {
+    /// It was only looked at yet: whoever cannot make sense of its rows leaves it as it is.
+    Closed,
+    Open(Database),
+    /// All of it goes into a new file: after an error, or since the old one has grown.
+    ToBeWrittenAnew,
 }
 
 impl Journal {
-    /// The journal in the file `path`, which is made if there is none, and what is in it.
+    /// The journal in the file `path`, which is made if there is none, and what is in it. One that
+    /// is there is not written to before the first [`commit`](Self::commit).
     ///
     /// # Errors
     /// If it is not ours, not whole or not understood; it is untouched then.
@@ -100,22 +112,19 @@ impl Journal {
             disk: Box::new(disk),
             whose,
             rows: Rows::new(),
-            database: None,
+            database: Kept::ToBeWrittenAnew,
         };
         let there = journal.disk.look().map_err(failed)?;
         let len = there.as_ref().map_or(Ok(0), |medium| medium.len());
         let len = len.map_err(failed)?;
         if let Some(medium) = there {
             journal.rows = examine(&place, medium, &journal.whose)?;
-            let worth = WORTH_REWRITING_BYTES.max(journal.content_bytes() * SPARSE);
-            if len <= worth {
-                let medium = AnyMedium(journal.disk.open().map_err(failed)?);
-                let opened = builder().create_with_backend(medium);
-                let opened = opened.map_err(|error| failed(std::io::Error::other(error)))?;
-                journal.database = Some(opened);
+            // Whether it can be written, too.
+            drop(journal.disk.open().map_err(failed)?);
+            if len <= WORTH_REWRITING_BYTES.max(journal.content_bytes() * SPARSE) {
+                journal.database = Kept::Closed;
             }
-        }
-        if journal.database.is_none() {
+        } else {
             journal
                 .write_anew()
                 .map_err(|error| failed(std::io::Error::other(in_words(error))))?;
@@ -135,12 +144,8 @@ impl Journal {
                 None => self.rows.remove(key),
             };
         }
-        let written = match &self.database {
-            Some(database) => write(database, rows),
-            None => self.write_anew(),
-        };
-        written.map_err(|error| {
-            self.database = None;
+        self.write(rows).map_err(|error| {
+            self.database = Kept::ToBeWrittenAnew;
             CommitError {
                 place: self.disk.name(),
                 why: in_words(error),
@@ -165,11 +170,22 @@ impl Journal {
             .sum()
     }
 
+    fn write(&mut self, rows: &[Row]) -> Result<(), redb::Error> {
+        if let Kept::Closed = self.database {
+            let medium = AnyMedium(self.disk.open()?);
+            self.database = Kept::Open(builder().create_with_backend(medium)?);
+        }
+        match &self.database {
+            Kept::Open(database) => write(database, rows),
+            Kept::Closed | Kept::ToBeWrittenAnew => self.write_anew(),
+        }
+    }
+
     /// Writes everything into a new file, which takes the place of the old one.
     fn write_anew(&mut self) -> Result<(), redb::Error> {
         match self.successor() {
             Ok(database) => {
-                self.database = Some(database);
+                self.database = Kept::Open(database);
                 Ok(())
             }
             Err(error) => {
