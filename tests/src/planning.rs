@@ -104,6 +104,10 @@ impl Planner for TestPlanner {
         self.planner.keep(goal, agendas);
     }
 
+    fn number_frames_from(&mut self, first: u64) {
+        self.planner.number_frames_from(first);
+    }
+
     fn release(&mut self, goal: &GoalId) {
         self.planner.release(goal);
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Agent, Phase};
+use super::{Agent, Phase, Record};
 use crate::planner::{Item, Planner};
 
 impl<P: Planner> Agent<P> {
@@ -12,51 +12,55 @@ impl<P: Planner> Agent<P> {
     ///
     /// If one does not hold.
     pub fn check(&self) {
+        let fault = self.fault();
+        assert!(fault.is_none(), "{}", fault.unwrap_or_default());
+    }
+
+    /// The first of the invariants of [`Agent`] that does not hold, in words.
+    pub(super) fn fault(&self) -> Option<String> {
+        let running = self.running.as_ref();
+        let execution = running.and_then(|running| running.execution());
         let mut goals = BTreeSet::new();
         let mut records = BTreeSet::new();
         for intention in self.all_intentions() {
             let goal = &intention.goal.id;
-            assert!(goals.insert(goal), "{goal} is in two places");
-            assert!(
-                !intention.agendas.is_empty(),
-                "{goal} has nothing left to do and is not over"
-            );
-            let known: BTreeSet<_> = intention.records.iter().map(|record| &record.id).collect();
-            for id in &known {
-                assert!(records.insert((*id).clone()), "{id} is kept twice");
+            if !goals.insert(goal) {
+                return Some(format!("{goal} is in two places"));
             }
-            let running = self
-                .running
-                .as_ref()
-                .and_then(|running| running.execution());
+            if intention.agendas.is_empty() {
+                return Some(format!("{goal} has nothing left to do and is not over"));
+            }
+            let mut known = BTreeSet::new();
+            for Record { id, .. } in &intention.records {
+                known.insert(id);
+                if !records.insert(id) {
+                    return Some(format!("{id} is kept twice"));
+                }
+            }
             for step in intention.plans.iter().flat_map(|plan| &plan.steps) {
-                if let Item::Resume { id, .. } = &step.item {
-                    let is_running = running.is_some_and(|execution| execution.id == *id);
-                    assert!(
-                        known.contains(id) || is_running,
+                if let Item::Resume { id, .. } = &step.item
+                    && !known.contains(id)
+                    && execution.is_none_or(|execution| execution.id != *id)
+                {
+                    return Some(format!(
                         "a plan for {goal} resumes {id}, of which there is no record"
-                    );
+                    ));
                 }
             }
         }
-        let planning = self
-            .running
-            .as_ref()
-            .is_some_and(|r| matches!(r.phase, Phase::Planning));
-        assert!(
-            planning || !self.planner.is_thinking(),
-            "the planner thinks for nobody"
-        );
-        if let Some(running) = self
-            .running
-            .as_ref()
-            .and_then(|running| running.execution())
-        {
-            assert!(
-                !records.contains(&running.id),
-                "{} is running and kept as suspended",
-                running.id
-            );
+        let planning = running.is_some_and(|r| matches!(r.phase, Phase::Planning));
+        if !planning && self.planner.is_thinking() {
+            return Some("the planner thinks for nobody".to_owned());
         }
+        let id = execution.map(|execution| &execution.id);
+        if let Some(id) = id.filter(|id| records.contains(id)) {
+            return Some(format!("{id} is running and kept as suspended"));
+        }
+        if let Some((superior, id)) = &self.hold
+            && !self.goal_of(superior, id)
+        {
+            return Some(format!("{superior} waits for {id}, which is not here"));
+        }
+        None
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use crate::model::{Domain, ExecutionModel, FactChange, Map, Symbol};
+use crate::model::{Domain, ExecutionModel, FactChange, Map, Symbol, Time};
 
 /// What an agent is made with. Two agents that differ in nothing else are at different levels.
 #[derive(Clone, Debug)]
@@ -88,6 +88,11 @@ pub struct Policy {
     /// others counted apart: who fills one list leaves room in the other. What is kept for goals,
     /// in memory and on disk, is bounded by this.
     pub most_waiting: usize,
+    /// How many goals that are over are remembered, so that late questions are still answered and
+    /// none is done twice.
+    pub ended_kept: usize,
+    /// How long, on the world's clock.
+    pub ended_kept_for: Time,
 }
 
 impl Default for Policy {
@@ -99,9 +104,13 @@ impl Default for Policy {
             expansions_per_slice: 200,
             attempts: 3,
             most_waiting: MOST_WAITING,
+            ended_kept: 1000,
+            ended_kept_for: ONE_HOUR,
         }
     }
 }
 
 /// More goals than anybody keeps in mind, and few enough to look through at every change.
 const MOST_WAITING: usize = 64;
+
+const ONE_HOUR: Time = Time(3_600_000_000);

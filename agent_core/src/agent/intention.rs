@@ -36,6 +36,8 @@ pub struct Intention {
     pub started: bool,
     /// Why it ends as soon as what is half done has been rolled back.
     pub cancelled: Option<String>,
+    /// Whoever wanted it has forgotten it: it ends as it is, without anything being rolled back.
+    pub orphaned: bool,
     /// Whether its first plan held when that was last looked at.
     pub fits: bool,
     /// Facts that executors named as missing.
@@ -45,7 +47,7 @@ pub struct Intention {
     /// Why the last one did.
     pub last_failure: Option<String>,
     /// Tasks under which something was done that must not be done again.
-    done_once: BTreeSet<u64>,
+    pub(super) done_once: BTreeSet<u64>,
 }
 
 impl Intention {
@@ -62,6 +64,7 @@ impl Intention {
             records: Vec::new(),
             started: false,
             cancelled: None,
+            orphaned: false,
             fits: true,
             blocked_by: BTreeSet::new(),
             failures: BTreeMap::new(),

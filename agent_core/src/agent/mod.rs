@@ -10,20 +10,25 @@ mod check;
 mod command;
 mod configuration;
 mod emergency;
+mod ended;
 mod execution;
 mod goal;
 mod instruct;
 mod intention;
+mod memory;
 mod monitor;
 mod planning;
 mod stack;
 mod subplan;
 mod suspension;
+#[cfg(test)]
+mod tests;
 mod waiting;
 
 pub use alternatives::{Against, Alternative, Alternatives, Choice, GoalPlace};
 pub use aside::{GoalsAside, WaitsFor};
 pub use configuration::{Configuration, Executors, MapsBelow, Policy};
+pub use ended::Ended;
 pub use goal::Goal;
 pub use intention::{Intention, Record};
 pub use stack::{ResumedBy, SuspendedGoal, SuspendedGoalStack};
@@ -35,10 +40,9 @@ use std::sync::Arc;
 
 use crate::model::{Belief, Domain, FactChange, Map, Symbol, Task, Time};
 use crate::planner::{Planner, Step};
-use crate::protocol::{ActionId, GoalId, Happening, Input, Machine, Output, Reply, Report};
+use crate::protocol::{ActionId, GoalId, Happening, Input, Machine, Output, Reply};
+use memory::Memory;
 
-/// How many ended goals are remembered, so that a late question is still answered.
-const ENDED_GOALS: usize = 1000;
 /// How many goals one input may carry to an end before others are listened to.
 const ROUNDS_PER_INPUT: usize = 8;
 
@@ -54,11 +58,14 @@ pub struct Agent<P> {
     belief: Belief,
     /// The map that the running goal is pursued on, or the last one was.
     map: Arc<Map>,
+    /// The map that it was made with.
+    own_map: Arc<Map>,
     running: Option<Running>,
     stack: SuspendedGoalStack,
     waiting: WaitingGoals,
     aside: GoalsAside,
     ended: VecDeque<Ended>,
+    next_ended: u64,
     /// A superior wants this goal, and what runs above it, suspended.
     hold: Option<(Symbol, ActionId)>,
     /// What superiors were last told, in their words.
@@ -70,6 +77,9 @@ pub struct Agent<P> {
     next_goal: u64,
     now: Time,
     outputs: VecDeque<Output<Infallible>>,
+    /// There may be more to do than waiting.
+    unsettled: bool,
+    memory: Memory,
 }
 
 /// The goal that is pursued at present.
@@ -108,15 +118,6 @@ struct Execution {
     due: Option<Time>,
 }
 
-/// A goal that is over.
-#[derive(Clone, Debug)]
-struct Ended {
-    id: GoalId,
-    tasks: Vec<Task>,
-    superior: Option<(Symbol, ActionId)>,
-    outcome: Report,
-}
-
 impl<P: Planner> Agent<P> {
     /// An agent that has nothing to do.
     pub fn new(mut configuration: Configuration, planner: P) -> Self {
@@ -124,17 +125,21 @@ impl<P: Planner> Agent<P> {
         let mut belief = Belief::default();
         belief.apply_all(&map.take_changing(&configuration.model.observable));
         belief.apply_all(&std::mem::take(&mut configuration.facts));
+        let map = Arc::new(map);
         let mut agent = Self {
             last_executor: configuration.executors.default.clone(),
             configuration,
             planner,
+            memory: Memory::new(belief.clone()),
             belief,
-            map: Arc::new(map),
+            own_map: map.clone(),
+            map,
             running: None,
             stack: SuspendedGoalStack::default(),
             waiting: WaitingGoals::default(),
             aside: GoalsAside::default(),
             ended: VecDeque::new(),
+            next_ended: 0,
             hold: None,
             told: Belief::default(),
             new_values: Vec::new(),
@@ -142,6 +147,7 @@ impl<P: Planner> Agent<P> {
             next_goal: 1,
             now: Time::ZERO,
             outputs: VecDeque::new(),
+            unsettled: false,
         };
         let problem = agent.problem();
         agent.told = crate::planner::project(&problem);
@@ -195,6 +201,7 @@ impl<P: Planner> Agent<P> {
 
     /// Brings the machine to rest: starts, stops and resumes goals until there is only waiting.
     fn settle(&mut self) {
+        self.unsettled = false;
         for _ in 0..ROUNDS_PER_INPUT {
             while self.start_next() {}
             let Some(running) = &self.running else {
@@ -210,6 +217,9 @@ impl<P: Planner> Agent<P> {
                     if self.yields_now() {
                         continue;
                     }
+                    if !self.planner.is_thinking() {
+                        self.plan();
+                    }
                     let slice = self.configuration.policy.expansions_per_slice;
                     let Some(outcome) = self.planner.think(slice) else {
                         return;
@@ -218,6 +228,7 @@ impl<P: Planner> Agent<P> {
                 }
             }
         }
+        self.unsettled = true;
     }
 
     fn emit(&mut self, goal: Option<&GoalId>, what: Happening) {
@@ -240,20 +251,6 @@ impl<P: Planner> Agent<P> {
             .chain(self.waiting.intentions())
     }
 
-    /// What superiors and users hear of a goal that has ended.
-    fn remember(&mut self, intention: &Intention, outcome: Report) {
-        self.planner.release(&intention.goal.id);
-        if self.ended.len() == ENDED_GOALS {
-            self.ended.pop_front();
-        }
-        self.ended.push_back(Ended {
-            id: intention.goal.id.clone(),
-            tasks: intention.goal.tasks.clone(),
-            superior: intention.goal.superior.clone(),
-            outcome,
-        });
-    }
-
     /// Counts of goals by where they are: running, suspended, waiting, aside.
     pub fn counts(&self) -> BTreeMap<&'static str, usize> {
         BTreeMap::from([
@@ -271,6 +268,7 @@ impl<P: Planner> Machine for Agent<P> {
 
     fn handle(&mut self, now: Time, input: Input<Infallible>) -> Option<Reply> {
         self.now = self.now.max(now);
+        self.forget_ended();
         let reply = match input {
             Input::Goal(request) => Some(Reply::Goal(self.accept(request))),
             Input::Command(command) => Some(Reply::Command(self.command(&command))),
@@ -302,7 +300,7 @@ impl<P: Planner> Machine for Agent<P> {
     }
 
     fn wake_at(&self) -> Option<Time> {
-        if self.planner.is_thinking() {
+        if self.unsettled || self.planner.is_thinking() {
             return Some(Time::ZERO);
         }
         // A goal that is being cancelled has no deadline any more.

@@ -8,25 +8,23 @@ use crate::protocol::Happening;
 impl<P: Planner> Agent<P> {
     /// The changes that are about predicates and functions of this level.
     pub(super) fn known(&mut self, facts: &[FactChange]) -> Vec<FactChange> {
-        let domain = self.configuration.domain.clone();
-        let (mut known, mut values) = (Vec::new(), Vec::new());
-        for change in facts {
-            let (declared, atom) = match change {
-                FactChange::Add(fact) | FactChange::Remove(fact) => {
-                    (domain.predicates.get(&fact.name), fact)
-                }
-                FactChange::Set(function, _) => {
-                    values.push(change.clone());
-                    (domain.functions.get(&function.name), function)
-                }
-            };
-            if declared.is_some_and(|parameters| parameters.len() == atom.args.len()) {
-                known.push(change.clone());
-            }
-        }
+        let values = facts.iter().filter(|c| matches!(c, FactChange::Set(..)));
         // A superior may know a function that we do not.
-        self.new_values = values;
-        known
+        self.new_values = values.cloned().collect();
+        let known = facts.iter().filter(|change| self.is_known(change));
+        known.cloned().collect()
+    }
+
+    /// Whether a change is about a predicate or function of this level.
+    pub(super) fn is_known(&self, change: &FactChange) -> bool {
+        let domain = &self.configuration.domain;
+        let (declared, atom) = match change {
+            FactChange::Add(fact) | FactChange::Remove(fact) => {
+                (domain.predicates.get(&fact.name), fact)
+            }
+            FactChange::Set(function, _) => (domain.functions.get(&function.name), function),
+        };
+        declared.is_some_and(|parameters| parameters.len() == atom.args.len())
     }
 
     /// Facts that turned out otherwise though nobody acted.
@@ -55,6 +53,7 @@ impl<P: Planner> Agent<P> {
     /// different.
     pub(super) fn learn(&mut self, changes: &[FactChange]) -> Vec<FactChange> {
         let changes = self.belief.apply_all(changes);
+        self.memory.touch(&changes);
         self.planner.observe(&changes);
         changes
     }

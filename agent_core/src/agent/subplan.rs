@@ -65,7 +65,7 @@ impl<P: Planner> Agent<P> {
     }
 
     /// Whether a superior's instruction is known and not over.
-    fn goal_of(&self, superior: &Symbol, id: &ActionId) -> bool {
+    pub(super) fn goal_of(&self, superior: &Symbol, id: &ActionId) -> bool {
         self.all_intentions().any(|intention| {
             intention
                 .goal

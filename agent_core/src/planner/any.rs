@@ -80,6 +80,10 @@ impl Planner for AnyPlanner {
         self.planner_mut().keep(goal, agendas);
     }
 
+    fn number_frames_from(&mut self, first: u64) {
+        self.planner_mut().number_frames_from(first);
+    }
+
     fn release(&mut self, goal: &GoalId) {
         self.planner_mut().release(goal);
     }

@@ -144,6 +144,10 @@ pub trait Planner {
     /// worth keeping. Whoever does not say so may lose it after a while, and nothing else.
     fn keep(&mut self, _goal: &GoalId, _agendas: &[Agenda]) {}
 
+    /// Frames of plans that are found from now on have this number or a higher one: lower ones are
+    /// those of another planner, whose plans were written down and read again.
+    fn number_frames_from(&mut self, first: u64);
+
     /// A goal that was set aside is taken up or given up.
     fn release(&mut self, _goal: &GoalId) {}
 }

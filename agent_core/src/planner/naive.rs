@@ -55,6 +55,10 @@ impl Planner for NaivePlanner {
     fn stop(&mut self) {
         self.search = None;
     }
+
+    fn number_frames_from(&mut self, first: u64) {
+        self.next_frame = self.next_frame.max(first);
+    }
 }
 
 /// A state, what is to be done in it, and how it was reached.

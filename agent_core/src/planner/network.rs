@@ -124,6 +124,12 @@ impl TaskList {
         self.0.as_ref().map_or(0, |cell| cell.length)
     }
 
+    /// Where it is, which tells lists that share their cells from lists that only look alike. Says
+    /// nothing once the list is dropped.
+    pub(crate) fn address(&self) -> Option<usize> {
+        self.0.as_ref().map(|cell| Arc::as_ptr(cell).addr())
+    }
+
     /// The items in order.
     pub fn items(&self) -> impl Iterator<Item = &Item> {
         let mut at = self;
@@ -177,11 +183,63 @@ impl fmt::Debug for TaskList {
 }
 
 impl Drop for TaskList {
-    /// Not by recursion: a list may be longer than the stack is deep.
     fn drop(&mut self) {
-        let mut next = self.0.take();
-        while let Some(cell) = next {
-            next = Arc::into_inner(cell).and_then(|mut cell| cell.rest.0.take());
+        let_go(self.0.take(), None);
+    }
+}
+
+impl Drop for Frame {
+    fn drop(&mut self) {
+        let_go(self.rest.0.take(), self.parent.take());
+    }
+}
+
+/// Drops cells and frames that nobody else holds, and what only they hold. Not by recursion: lists
+/// may be longer, and tasks nested more deeply, than the stack is deep.
+fn let_go(mut cell: Option<Arc<Cell>>, frame: Option<Arc<Frame>>) {
+    let mut frames: Vec<Arc<Frame>> = frame.into_iter().collect();
+    loop {
+        while let Some(last) = cell {
+            cell = Arc::into_inner(last).and_then(|mut last| {
+                // A frame that others hold as well is no work.
+                let frame = last.frame.take();
+                frames.extend(frame.filter(|frame| Arc::strong_count(frame) == 1));
+                last.rest.0.take()
+            });
         }
+        let Some(frame) = frames.pop() else {
+            return;
+        };
+        if let Some(mut frame) = Arc::into_inner(frame) {
+            frames.extend(frame.parent.take());
+            cell = frame.rest.0.take();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Atom;
+
+    #[test]
+    fn tasks_may_be_nested_more_deeply_than_the_stack_is_deep() {
+        let task = || Item::Task(Atom::new("wander", []));
+        let mut parent: Option<Arc<Frame>> = None;
+        let mut list = TaskList::empty();
+        for id in 0..1_000_000 {
+            // Of every third only the list knows the frame.
+            let above = if id % 3 == 0 { None } else { parent.clone() };
+            let frame = Arc::new(Frame {
+                id,
+                task: task(),
+                rest: list.clone(),
+                parent: above,
+            });
+            list = list.prepend(task(), parent.replace(frame));
+        }
+        assert_eq!(list.len(), 1_000_000);
+        drop(list);
+        drop(parent);
     }
 }

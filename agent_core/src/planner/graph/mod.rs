@@ -388,6 +388,10 @@ impl Planner for GraphPlanner {
         self.kept.insert(goal.clone(), tasks.collect());
     }
 
+    fn number_frames_from(&mut self, first: u64) {
+        self.next_frame = self.next_frame.max(first);
+    }
+
     fn release(&mut self, goal: &GoalId) {
         self.kept.remove(goal);
     }

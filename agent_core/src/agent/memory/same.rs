@@ -1,0 +1,171 @@
+//! Whether a goal is exactly what it was when it was written down last. What is shared is compared
+//! by where it is: this is asked of every goal after every input.
+
+use std::sync::Arc;
+
+use super::super::{Execution, Goal, Intention, Phase, Record, Running};
+use crate::planner::{Agenda, Plan, Step, TaskList};
+
+/// What was written down of a goal.
+#[derive(Clone, Debug)]
+pub(super) struct Written {
+    intention: Intention,
+    pursuit: Option<Pursuit>,
+    /// The number of its map.
+    pub map: Option<u64>,
+}
+
+/// [`Running`] but for its goal.
+#[derive(Clone, Debug)]
+struct Pursuit {
+    phase: Phase,
+    resumed: bool,
+    set_aside: bool,
+    broken: Option<String>,
+    surprised: bool,
+}
+
+impl Written {
+    pub fn new(intention: &Intention, running: Option<&Running>, map: Option<u64>) -> Self {
+        Self {
+            intention: intention.clone(),
+            pursuit: running.map(|running| {
+                let Running {
+                    intention: _,
+                    phase,
+                    resumed,
+                    set_aside,
+                    broken,
+                    surprised,
+                } = running;
+                Pursuit {
+                    phase: phase.clone(),
+                    resumed: *resumed,
+                    set_aside: *set_aside,
+                    broken: broken.clone(),
+                    surprised: *surprised,
+                }
+            }),
+            map,
+        }
+    }
+
+    pub fn is_still(&self, intention: &Intention, running: Option<&Running>) -> bool {
+        let pursuit = match (&self.pursuit, running) {
+            (None, None) => true,
+            (Some(before), Some(now)) => {
+                same_phase(&before.phase, &now.phase)
+                    && before.resumed == now.resumed
+                    && before.set_aside == now.set_aside
+                    && before.broken == now.broken
+                    && before.surprised == now.surprised
+            }
+            _ => false,
+        };
+        pursuit && same_intention(&self.intention, intention)
+    }
+}
+
+fn same_phase(a: &Phase, b: &Phase) -> bool {
+    match (a, b) {
+        (Phase::Planning, Phase::Planning) => true,
+        (Phase::Executing(a), Phase::Executing(b)) | (Phase::Stopping(a), Phase::Stopping(b)) => {
+            let Execution {
+                id,
+                executor,
+                step,
+                due,
+            } = a;
+            *id == b.id && *executor == b.executor && same_step(step, &b.step) && *due == b.due
+        }
+        _ => false,
+    }
+}
+
+fn same_intention(a: &Intention, b: &Intention) -> bool {
+    let Intention {
+        goal,
+        agendas,
+        plans,
+        records,
+        started,
+        cancelled,
+        orphaned,
+        fits,
+        blocked_by,
+        failures,
+        last_failure,
+        done_once,
+    } = a;
+    same_goal(goal, &b.goal)
+        && *started == b.started
+        && *fits == b.fits
+        && *cancelled == b.cancelled
+        && *orphaned == b.orphaned
+        && all(agendas, &b.agendas, same_agenda)
+        && all(records, &b.records, same_record)
+        && all(plans, &b.plans, same_plan)
+        && *blocked_by == b.blocked_by
+        && *failures == b.failures
+        && *last_failure == b.last_failure
+        && *done_once == b.done_once
+}
+
+fn same_goal(a: &Goal, b: &Goal) -> bool {
+    let Goal {
+        id,
+        tasks,
+        urgency,
+        priority,
+        deadline,
+        number,
+        superior,
+        map,
+    } = a;
+    *number == b.number
+        && Arc::ptr_eq(map, &b.map)
+        && *id == b.id
+        && *tasks == b.tasks
+        && *urgency == b.urgency
+        && *priority == b.priority
+        && *deadline == b.deadline
+        && *superior == b.superior
+}
+
+fn same_agenda(a: &Agenda, b: &Agenda) -> bool {
+    let Agenda { tasks, origin } = a;
+    same_list(tasks, &b.tasks) && *origin == b.origin
+}
+
+fn same_record(a: &Record, b: &Record) -> bool {
+    let Record { id, executor, step } = a;
+    *id == b.id && *executor == b.executor && same_step(step, &b.step)
+}
+
+fn same_plan(a: &Plan, b: &Plan) -> bool {
+    let Plan { steps, rest, cost } = a;
+    *cost == b.cost && same_list(rest, &b.rest) && all(steps, &b.steps, same_step)
+}
+
+fn same_step(a: &Step, b: &Step) -> bool {
+    let Step {
+        item,
+        cost,
+        frame,
+        rest,
+    } = a;
+    let same_frame = match (frame, &b.frame) {
+        (None, None) => true,
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        _ => false,
+    };
+    same_frame && same_list(rest, &b.rest) && *cost == b.cost && *item == b.item
+}
+
+fn same_list(a: &TaskList, b: &TaskList) -> bool {
+    a.address() == b.address()
+}
+
+fn all<T>(a: &[T], b: &[T], same: fn(&T, &T) -> bool) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
+}
