@@ -42,7 +42,6 @@ pub struct Belief {
     #[serde(with = "values_as_list")]
     values: Arc<BTreeMap<Fact, f64>>,
     /// Functions whose values are too many to list.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     landmarks: Vec<Arc<Landmarks>>,
     /// The sum over all facts and values; see [`fingerprint`](Self::fingerprint).
     #[serde(skip_serializing)]
@@ -256,5 +255,21 @@ mod values_as_list {
     ) -> Result<Arc<BTreeMap<Fact, f64>>, D::Error> {
         let listed = Vec::<(Fact, f64)>::deserialize(deserializer)?;
         Ok(Arc::new(listed.into_iter().collect()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_belief_can_be_read_from_a_journal() {
+        let facts = [
+            FactChange::Add(Fact::new("at", ["n1"])),
+            FactChange::Set(Fact::new("gap", ["arc1", "n1"]), 2.5),
+        ];
+        let belief: Belief = facts.into_iter().collect();
+        let bytes = postcard::to_stdvec(&belief).expect("plain data");
+        assert_eq!(postcard::from_bytes(&bytes), Ok(belief));
     }
 }
