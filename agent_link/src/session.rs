@@ -99,10 +99,39 @@ pub fn names_routers(file: &Path) -> Result<bool, SessionError> {
 }
 
 fn read(path: &Path) -> Result<Config, SessionError> {
-    Config::from_file(path).map_err(|why| SessionError::ConfigFile {
+    let mut config = Config::from_file(path).map_err(|why| SessionError::ConfigFile {
         path: path.display().to_string(),
         why,
-    })
+    })?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    for key in FILES {
+        beside(&mut config, key, folder)?;
+    }
+    Ok(config)
+}
+
+/// Settings that name files.
+const FILES: [&str; 6] = [
+    "transport/auth/usrpwd/dictionary_file",
+    "transport/link/tls/root_ca_certificate",
+    "transport/link/tls/listen_certificate",
+    "transport/link/tls/listen_private_key",
+    "transport/link/tls/connect_certificate",
+    "transport/link/tls/connect_private_key",
+];
+
+/// Certificates and passwords lie beside the file that names them, wherever it is used from. What
+/// does not lie there is looked for where zenoh looks, in the working directory.
+fn beside(config: &mut Config, key: &'static str, folder: &Path) -> Result<(), SessionError> {
+    let named = config.get_json(key).ok();
+    let named = named.and_then(|json| serde_json::from_str::<Option<String>>(&json).ok()?);
+    let Some(named) = named else { return Ok(()) };
+    let found = folder.join(named);
+    if !found.exists() {
+        return Ok(());
+    }
+    let found = serde_json::Value::from(found.to_string_lossy()).to_string();
+    set(config, key, &found)
 }
 
 /// What zenoh is told.
@@ -247,6 +276,25 @@ mod tests {
             r#"["tls/robot.example:7447"]"#
         );
         assert_eq!(get(&client, "listen/endpoints"), "[]");
+    }
+
+    #[test]
+    fn certificates_and_passwords_lie_beside_the_file_that_names_them() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("router.json5");
+        std::fs::write(
+            &path,
+            r#"{ transport: { auth: { usrpwd: { dictionary_file: "credentials.txt" } },
+                 link: { tls: { root_ca_certificate: "elsewhere/ca.pem" } } } }"#,
+        )
+        .unwrap();
+        let credentials = directory.path().join("credentials.txt");
+        std::fs::write(&credentials, "a:b").unwrap();
+        let config = read(&path).unwrap();
+        let found = get(&config, "transport/auth/usrpwd/dictionary_file");
+        assert_eq!(found, format!("{credentials:?}"));
+        let elsewhere = get(&config, "transport/link/tls/root_ca_certificate");
+        assert_eq!(elsewhere, r#""elsewhere/ca.pem""#);
     }
 
     #[test]

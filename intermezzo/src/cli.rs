@@ -26,7 +26,7 @@ Exit status:
   0  all went as it should
   1  a goal failed or was rejected, a role cannot be started, or a file has faults
   2  the command cannot be carried out as it was typed
-  3  no robot is running, or none answers
+  3  no robot is running, or none answers: not reachable, or you are not permitted to ask
   4  `plan`: it is proved that there is no plan
   5  `plan`: no plan was found, and there may be one
 
@@ -61,6 +61,10 @@ pub(crate) enum Command {
     Watch(WatchArgs),
     /// Find a plan for a problem in HDDL; no robot is needed.
     Plan(PlanArgs),
+    /// Make certificates, so that a robot does what it is told by those who may.
+    Certs(CertsArgs),
+    /// Make passwords, to the same end, for robots that are reached from one machine only.
+    Passwords(PasswordsArgs),
     /// Look after maps.
     #[command(subcommand)]
     Map(MapCommand),
@@ -84,6 +88,19 @@ pub(crate) struct Target {
     /// Zenoh settings (JSON5) for TLS and passwords.
     #[arg(long, value_name = "FILE")]
     pub(crate) zenoh_config: Option<PathBuf>,
+    /// The folder that `intermezzo certs` or `intermezzo passwords` has made, or what one was given
+    /// of it.
+    #[arg(
+        long,
+        value_name = "DIR",
+        env = "INTERMEZZO_SECURITY",
+        conflicts_with = "zenoh_config"
+    )]
+    pub(crate) security: Option<PathBuf>,
+    /// Who asks: that name's file in the folder is used. Without it, the operator's if it is there,
+    /// else the viewer's.
+    #[arg(long = "as", value_name = "NAME", env = "INTERMEZZO_USER")]
+    pub(crate) user: Option<String>,
 }
 
 #[derive(Args, Clone, Debug)]
@@ -175,6 +192,15 @@ pub(crate) struct UpArgs {
     /// Zenoh settings (JSON5) for TLS, passwords, access control.
     #[arg(long, value_name = "FILE")]
     pub(crate) zenoh_config: Option<PathBuf>,
+    /// Lock the doors: the folder that `intermezzo certs` or `intermezzo passwords` has made. The
+    /// router and every role take their own file from it.
+    #[arg(
+        long,
+        value_name = "DIR",
+        env = "INTERMEZZO_SECURITY",
+        conflicts_with = "zenoh_config"
+    )]
+    pub(crate) security: Option<PathBuf>,
     /// One JSON object a line instead of the timeline.
     #[arg(long)]
     pub(crate) json: bool,
@@ -330,6 +356,64 @@ pub(crate) struct PlanArgs {
     /// as many levels as are easily read, or DEPTH.
     #[arg(long, value_name = "DEPTH", num_args = 0..=1, require_equals = true)]
     pub(crate) explain: Option<Option<usize>>,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+In DIR there is then, each readable by you alone:
+  ca.pem, ca-key.pem            an authority; its key makes more certificates, and nothing else needs it
+  router, parent, child, executor, world, operator, viewer
+                                of each a certificate, its private key and a zenoh configuration
+
+Examples:
+  intermezzo certs keys                          then: intermezzo up --security keys
+  intermezzo certs keys --name robot1.example    if other machines reach the router by that name
+  intermezzo certs keys --add anna               one user more, signed by the same authority
+
+security/README.md says what each may do. Exit status: 0 all is there; 2 nothing was written.")]
+pub(crate) struct CertsArgs {
+    /// The folder; it is made if it is not there.
+    #[arg(value_name = "DIR")]
+    pub(crate) dir: PathBuf,
+    /// A name or address by which other machines reach the router. May be given several times.
+    #[arg(long, value_name = "HOST", conflicts_with = "add")]
+    pub(crate) name: Vec<String>,
+    /// How long the certificates are good for; the authority is for ten years.
+    #[arg(long, value_name = "DAYS", default_value_t = 365, value_parser = clap::value_parser!(u16).range(1..=3650))]
+    pub(crate) days: u16,
+    /// One user more, by an authority that was made here before.
+    #[arg(long, value_name = "NAME", conflicts_with = "force")]
+    pub(crate) add: Option<String>,
+    /// Replace what is there. Whoever has the old files is locked out.
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+In DIR there is then, each readable by you alone:
+  router.json5, credentials.txt       the router's configuration, and the names and passwords it knows
+  parent, child, executor, world, operator, viewer (.json5)
+                                      of each a zenoh configuration with its name and password
+
+Passwords are not sent, but what is said can be read on the way and changed: beyond one machine use
+certificates (intermezzo certs).
+
+Examples:
+  intermezzo passwords keys                then: intermezzo up --security keys
+  intermezzo passwords keys --add anna     one user more
+
+security/README.md says what each may do. Exit status: 0 all is there; 2 nothing was written.")]
+pub(crate) struct PasswordsArgs {
+    /// The folder; it is made if it is not there.
+    #[arg(value_name = "DIR")]
+    pub(crate) dir: PathBuf,
+    /// One user more.
+    #[arg(long, value_name = "NAME", conflicts_with = "force")]
+    pub(crate) add: Option<String>,
+    /// Replace what is there. Whoever has the old files is locked out.
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 #[derive(Debug, Subcommand)]

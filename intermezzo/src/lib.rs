@@ -7,6 +7,7 @@ mod exit;
 mod place;
 mod robot;
 mod scenario;
+mod security;
 mod show;
 mod snapshot;
 mod style;
@@ -17,13 +18,15 @@ pub use exit::{Exit, Failure};
 
 use agent_core::protocol::Command as Wish;
 use cli::{Command, DomainCommand, MapCommand, RoleCommand};
-use command::{check, control, demo, goal, plan, scale, status, up, watch};
+use command::{check, control, demo, goal, plan, scale, secure, status, up, watch};
 
 /// Carries out what was typed, if that needs neither a robot nor anything else that waits. `None`
 /// if it does: then it is for [`run`].
 pub fn run_alone(cli: &Cli) -> Option<Result<Exit, Failure>> {
     match &cli.command {
         Command::Plan(args) => Some(plan::run(args)),
+        Command::Certs(args) => Some(secure::certs(args)),
+        Command::Passwords(args) => Some(secure::passwords(args)),
         Command::Map(MapCommand::Check { file }) => Some(check::map(file)),
         Command::Map(MapCommand::Scale(args)) => Some(scale::run(args)),
         Command::Domain(DomainCommand::Check { dir }) => Some(check::domain(dir)),
@@ -52,7 +55,11 @@ pub async fn run(cli: Cli) -> Result<Exit, Failure> {
         Command::Watch(args) => watch::run(args).await,
         Command::Role(role) => run_role(role).await,
         // All of these went alone.
-        Command::Plan(_) | Command::Map(_) | Command::Domain(_) => Ok(Exit::Done),
+        Command::Plan(_)
+        | Command::Certs(_)
+        | Command::Passwords(_)
+        | Command::Map(_)
+        | Command::Domain(_) => Ok(Exit::Done),
     }
 }
 

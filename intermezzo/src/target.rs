@@ -1,6 +1,6 @@
 //! The robot that a command is for.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use agent_link::options::DEFAULT_ROBOT;
 use agent_link::registry::{Registry, RegistryError, RunningRobot};
@@ -9,6 +9,7 @@ use agent_link::{Client, ClientError, Keys, Session};
 
 use crate::cli::Target;
 use crate::exit::Failure;
+use crate::security;
 
 /// A connection to one robot.
 pub(crate) struct Connection {
@@ -17,8 +18,17 @@ pub(crate) struct Connection {
     pub(crate) client: Client,
     /// Where the robot was found, if it was looked for on this machine.
     pub(crate) found_at: Option<String>,
+    /// Who asks.
+    pub(crate) identity: Identity,
+}
+
+/// Who asks, and how they prove it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Identity {
     /// Zenoh settings.
-    pub(crate) file: Option<PathBuf>,
+    file: Option<PathBuf>,
+    /// Their name, if they have one.
+    name: Option<String>,
 }
 
 impl Connection {
@@ -28,8 +38,8 @@ impl Connection {
     /// If there is none, or none of that name, or nobody answers where it should be.
     pub(crate) async fn open(target: &Target) -> Result<Self, Failure> {
         let named = target.robot.as_deref();
-        let file = target.zenoh_config.as_deref();
-        let named_there = match file {
+        let identity = identity(target)?;
+        let named_there = match identity.file.as_deref() {
             None => false,
             Some(file) => session::names_routers(file).map_err(Failure::bad_input)?,
         };
@@ -37,19 +47,19 @@ impl Connection {
             let running = Registry::of_user()
                 .and_then(|registry| registry.find(named))
                 .map_err(not_found)?;
-            return Self::to(running, file).await;
+            return Self::to(running, &identity).await;
         }
         let robot = named.unwrap_or(DEFAULT_ROBOT);
-        Self::connect(robot, target.connect.clone(), file).await
+        Self::connect(robot, target.connect.clone(), &identity).await
     }
 
     /// Connects to a robot of this machine.
     ///
     /// # Errors
     /// If nobody answers where it should be.
-    pub(crate) async fn to(running: RunningRobot, file: Option<&Path>) -> Result<Self, Failure> {
+    pub(crate) async fn to(running: RunningRobot, identity: &Identity) -> Result<Self, Failure> {
         let connect = vec![running.endpoint.clone()];
-        let mut connection = Self::connect(&running.robot, connect, file).await?;
+        let mut connection = Self::connect(&running.robot, connect, identity).await?;
         connection.found_at = Some(running.endpoint);
         Ok(connection)
     }
@@ -57,25 +67,32 @@ impl Connection {
     async fn connect(
         robot: &str,
         connect: Vec<String>,
-        file: Option<&Path>,
+        identity: &Identity,
     ) -> Result<Self, Failure> {
         let keys = Keys::new(robot).map_err(Failure::bad_input)?;
-        let session = session::open(&Role::Client { connect }, file)
+        let session = session::open(&Role::Client { connect }, identity.file.as_deref())
             .await
             .map_err(|error| match error {
                 SessionError::ConfigFile { .. } | SessionError::Setting { .. } => {
                     Failure::bad_input(error)
                 }
-                _ => Failure::nobody_there(error).advice(
-                    "is the robot's router there, and may this machine and this user reach it?",
+                _ => Failure::nobody_there(format_args!(
+                    "no answer: not reachable or not permitted: {error}"
+                ))
+                .advice(
+                    "is the robot's router there, and may this machine and this user reach it (--security)?",
                 ),
             })?;
+        let client = Client::new(&session, &keys);
         Ok(Self {
-            client: Client::new(&session, &keys),
+            client: match &identity.name {
+                Some(name) => client.named(name),
+                None => client,
+            },
             session,
             keys,
             found_at: None,
-            file: file.map(Path::to_owned),
+            identity: identity.clone(),
         })
     }
 
@@ -86,15 +103,48 @@ impl Connection {
     }
 }
 
+/// Who asks, as the options say.
+fn identity(target: &Target) -> Result<Identity, Failure> {
+    let Some(folder) = &target.security else {
+        return Ok(Identity {
+            file: target.zenoh_config.clone(),
+            name: target.user.clone(),
+        });
+    };
+    let usual = || security::usual_user(folder).to_owned();
+    let name = target.user.clone().unwrap_or_else(usual);
+    Keys::new(&name).map_err(Failure::bad_input)?;
+    let file = security::configuration_of(folder, &name);
+    if !file.exists() {
+        let what = format!("{} has nothing for `{name}`", folder.display());
+        return Err(Failure::bad_input(what).advice(
+            "--as NAME for somebody else; `intermezzo certs` and `intermezzo passwords` make such folders",
+        ));
+    }
+    Ok(Identity {
+        file: Some(file),
+        name: Some(name),
+    })
+}
+
 /// What a question without an answer means to the user.
 pub(crate) fn unanswered(error: ClientError) -> Failure {
     match error {
         ClientError::NoAnswer { .. } => Failure::nobody_there(error).advice(
-            "`intermezzo status` shows who is there; a robot that just starts needs a second",
+            "`intermezzo status` shows who is there; a robot that just starts needs a second; with --security, --as says who asks",
         ),
         ClientError::Name(_) => Failure::bad_input(error),
         _ => Failure::failed(error),
     }
+}
+
+/// Nobody of a robot is seen.
+pub(crate) fn nobody(keys: &Keys) -> Failure {
+    Failure::nobody_there(format_args!(
+        "no answer: not reachable or not permitted (nobody of robot `{}` is seen)",
+        keys.robot()
+    ))
+    .advice("check the name (--robot), the address (--connect) and who asks (--as)")
 }
 
 fn not_found(error: RegistryError) -> Failure {

@@ -29,6 +29,7 @@ pub(crate) async fn run(args: DemoArgs) -> Result<Exit, Failure> {
         state: None,
         world_elsewhere: false,
         hang_limit: crate::robot::HANG_LIMIT,
+        security: None,
     };
     let performance = Performance {
         scenario: Some(scenario),

@@ -6,6 +6,7 @@ pub(crate) mod demo;
 pub(crate) mod goal;
 pub(crate) mod plan;
 pub(crate) mod scale;
+pub(crate) mod secure;
 pub(crate) mod status;
 pub(crate) mod up;
 pub(crate) mod watch;

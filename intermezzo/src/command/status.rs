@@ -11,7 +11,7 @@ use crate::cli::StatusArgs;
 use crate::exit::{Exit, Failure};
 use crate::show::alternatives;
 use crate::style::{ASIDE, BAD, BOLD, DIM, GOOD, URGENT};
-use crate::target::{Connection, unanswered};
+use crate::target::{Connection, nobody, unanswered};
 
 /// The order in which agents are shown; others follow.
 const ORDER: [&str; 4] = ["parent", "child", "executor", "world"];
@@ -54,11 +54,7 @@ async fn look_at_all(connection: &Connection, plans: bool) -> Result<Seen, Failu
     names.dedup();
     let processes = client.supervisor().await.map_err(unanswered)?;
     if names.is_empty() && processes.is_none() {
-        return Err(Failure::nobody_there(format_args!(
-            "nobody of robot `{}` is there",
-            connection.keys.robot()
-        ))
-        .advice("check the name (--robot) and the address (--connect)"));
+        return Err(nobody(&connection.keys));
     }
     let mut agents = Map::new();
     for name in &names {

@@ -47,6 +47,7 @@ pub(crate) async fn run(args: UpArgs) -> Result<Exit, Failure> {
         state: args.state,
         world_elsewhere: args.no_world,
         hang_limit: args.hang_limit,
+        security: args.security,
     };
     let performance = Performance {
         scenario,

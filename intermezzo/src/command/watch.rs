@@ -7,7 +7,7 @@ use agent_core::model::{Symbol, Time};
 use crate::cli::WatchArgs;
 use crate::exit::{Exit, Failure};
 use crate::show::{ForPeople, JsonLines, Screen};
-use crate::target::{Connection, unanswered};
+use crate::target::{Connection, nobody, unanswered};
 
 /// What changes by itself in every place that we know of; a watcher is not told the place.
 const OBSERVABLE: &str = "open";
@@ -35,11 +35,7 @@ async fn watch(connection: &Connection, screen: &mut impl Screen) -> Result<Exit
         .map_err(unanswered)?
         .is_empty()
     {
-        return Err(Failure::nobody_there(format_args!(
-            "nobody of robot `{}` is there",
-            connection.keys.robot()
-        ))
-        .advice("check the name (--robot) and the address (--connect)"));
+        return Err(nobody(&connection.keys));
     }
     let mut interrupted = pin!(agent_link::interrupted());
     loop {

@@ -18,6 +18,7 @@ use agent_link::{Clock, Keys, Session};
 use tokio::sync::mpsc;
 
 use crate::exit::Failure;
+use crate::security;
 
 pub use role_process::RoleKind;
 use state_dir::StateDir;
@@ -59,6 +60,18 @@ pub struct Setup {
     pub world_elsewhere: bool,
     /// A role that has not answered for so long is killed and started again.
     pub hang_limit: Duration,
+    /// The folder with settings for everybody, instead of `zenoh_config`.
+    pub security: Option<PathBuf>,
+}
+
+impl Setup {
+    /// The zenoh settings of a role, or of this process.
+    fn zenoh_config_of(&self, name: &str) -> Option<PathBuf> {
+        match &self.security {
+            Some(folder) => Some(security::configuration_of(folder, name)),
+            None => self.zenoh_config.clone(),
+        }
+    }
 }
 
 /// What becomes of the roles.
@@ -184,7 +197,11 @@ impl Robot {
                 connect: setup.connect.clone(),
             }
         };
-        let session = session::open(&role, setup.zenoh_config.as_deref())
+        let name = match role {
+            Role::Router { .. } => security::ROUTER,
+            Role::Client { .. } => security::OPERATOR,
+        };
+        let session = session::open(&role, setup.zenoh_config_of(name).as_deref())
             .await
             .map_err(|error| not_opened(&error, setup))?;
         let endpoints = if setup.connect.is_empty() {

@@ -104,7 +104,7 @@ impl RoleProcess {
         if let Some(place) = &setup.place {
             command.arg("--place").arg(place);
         }
-        if let Some(file) = &setup.zenoh_config {
+        if let Some(file) = setup.zenoh_config_of(kind.name()) {
             command.arg("--zenoh-config").arg(file);
         }
         match kind {

@@ -6,6 +6,7 @@ mod harness;
 mod demo;
 mod ending;
 mod goals;
+mod locked;
 mod refusals;
 mod side_by_side;
 mod supervision;

@@ -230,9 +230,7 @@ async fn moved(connection: &Connection) -> Option<Connection> {
     if running.endpoint == *found {
         return None;
     }
-    Connection::to(running, connection.file.as_deref())
-        .await
-        .ok()
+    Connection::to(running, &connection.identity).await.ok()
 }
 
 fn words(event: &Event) -> Option<String> {
