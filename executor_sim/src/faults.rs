@@ -90,9 +90,25 @@ impl Faults {
         }
     }
 
+    /// How far in its list or its chances it is.
+    pub(crate) fn position(&self) -> (u64, u128) {
+        match &self.source {
+            Source::Random { rng, .. } => (self.asked, rng.get_word_pos()),
+            Source::None | Source::List(_) => (self.asked, 0),
+        }
+    }
+
+    /// Goes on from where one of the same list or seed was.
+    pub(crate) fn go_on_from(&mut self, (asked, chance): (u64, u128)) {
+        self.asked = asked;
+        if let Source::Random { rng, .. } = &mut self.source {
+            rng.set_word_pos(chance);
+        }
+    }
+
     /// What goes wrong with the next action. To be asked once for each.
     pub fn next_action(&mut self) -> Option<Fault> {
-        self.asked += 1;
+        self.asked = self.asked.saturating_add(1);
         match &mut self.source {
             Source::None => None,
             Source::List(faults) => faults.get(&self.asked).copied(),

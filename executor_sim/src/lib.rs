@@ -19,7 +19,7 @@ mod signal;
 mod simulated_robot;
 mod world;
 
-pub use controller::{Controller, Memory, Skill, Vocabulary, VocabularyError};
+pub use controller::{Controller, Skill, Vocabulary, VocabularyError};
 pub use faults::{Fault, FaultRates, Faults};
 pub use floor::{Floor, FloorError, Passage};
 pub use place::Place;
@@ -27,4 +27,7 @@ pub use profile::MoverSpec;
 pub use setup::SetupError;
 pub use signal::{MotorCommand, Pose, Sensor, Ticket};
 pub use simulated_robot::SimulatedRobot;
-pub use world::World;
+pub use world::{Doing, Done, World};
+
+/// The world's name among the neighbours of a controller.
+pub const WORLD: &str = "world";

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use agent_core::model::{Symbol, Time};
+use agent_core::model::{Action, Symbol, Time};
 use serde::{Deserialize, Serialize};
 
 use crate::Place;
 
 /// Which command a sensor speaks of. The controller numbers its commands; a number is used once.
-#[derive(Clone, Copy, Debug, Eq, PartialEq, Ord, PartialOrd, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq, Ord, PartialOrd, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Ticket(pub u64);
 
@@ -54,11 +54,36 @@ pub enum MotorCommand {
         /// How long that takes, in seconds.
         duration_s: f64,
     },
+    /// Do something that is not seen in doors and places, such as handing something over. It is
+    /// done at the end of the time, or not at all.
+    Deed {
+        /// Number of the command.
+        ticket: Ticket,
+        /// What.
+        what: Action,
+        /// How long it takes, in seconds.
+        duration_s: f64,
+    },
     /// Stop everything, whoever commanded it, and say how things stand: [`Sensor::Halted`]. The
     /// first command of a controller that has just started, since it cannot know what goes on.
-    Halt,
+    Halt {
+        /// Number of the command, so that its answer can be told from that to an earlier one.
+        ticket: Ticket,
+    },
     /// Say where the robot is: [`Sensor::Pose`].
     Look,
+}
+
+impl MotorCommand {
+    /// Whether nothing moves because of it.
+    pub fn is_stop(&self) -> bool {
+        match self {
+            Self::Brake { .. } | Self::Hush { .. } | Self::Halt { .. } | Self::Look => true,
+            Self::Drive { .. } | Self::Speak { .. } | Self::SetDoor { .. } | Self::Deed { .. } => {
+                false
+            }
+        }
+    }
 }
 
 /// From the sensors to the controller.
@@ -135,12 +160,25 @@ pub enum Sensor {
         /// How it is now.
         open: bool,
     },
-    /// Everything stands still after [`MotorCommand::Halt`].
+    /// A deed is done.
+    DeedDone {
+        /// Number of the command.
+        ticket: Ticket,
+    },
+    /// Everything stands still after [`MotorCommand::Halt`]; what had not ended then never will.
+    /// A speech that was cut off by it was [`Hushed`](Self::Hushed) before.
     Halted {
+        /// Number of the halt.
+        ticket: Ticket,
         /// Where the robot stands.
         place: Place,
         /// Every door, and whether it is open.
         doors: BTreeMap<Symbol, bool>,
+        /// The greatest number of a command that has reached the motors, halts aside.
+        heard: Ticket,
+        /// The last command that was carried out to its end. `None` if there is no sensor that
+        /// could tell.
+        done: Option<Ticket>,
     },
     /// Where the robot is: whenever its motion changes, and when asked.
     Pose(Pose),
@@ -174,13 +212,16 @@ mod tests {
     #[test]
     fn what_motors_and_sensors_say_can_be_read_by_anybody() {
         let sensor = Sensor::Halted {
+            ticket: Ticket(8),
             place: Place::at("n1"),
             doors: BTreeMap::from([("d3".into(), true)]),
+            heard: Ticket(7),
+            done: None,
         };
         let text = serde_json::to_string(&sensor).expect("plain data");
         assert_eq!(
             text,
-            r#"{"Halted":{"place":{"Node":{"node":"n1"}},"doors":{"d3":true}}}"#
+            r#"{"Halted":{"ticket":8,"place":{"Node":{"node":"n1"}},"doors":{"d3":true},"heard":7,"done":null}}"#
         );
         assert_eq!(sensor, serde_json::from_str(&text).expect("as written"));
         let command = MotorCommand::Brake { ticket: Ticket(7) };

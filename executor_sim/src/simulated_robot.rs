@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 
 use agent_core::model::{Domain, ExecutionModel, FactChange, Time};
-use agent_core::protocol::{Input, Machine, Output, Reply};
+use agent_core::protocol::{Durable, Input, Machine, Output, Reply, Row, Rows, Unreadable};
 
 use crate::{Controller, Faults, Floor, MotorCommand, MoverSpec, Place, Sensor, SetupError, World};
 
@@ -104,6 +104,19 @@ impl SimulatedRobot {
     fn tell_controller(&mut self, now: Time, sensor: Sensor) {
         // Nor does a controller reply to its sensors.
         let _ = self.controller.handle(now, Input::Local(sensor));
+    }
+}
+
+/// The controller is written down. The world is what it is, whether or not anybody remembers it.
+impl Durable for SimulatedRobot {
+    fn write_down(&mut self) -> Vec<Row> {
+        self.controller.write_down()
+    }
+
+    fn recall(&mut self, rows: &Rows) -> Result<(), Unreadable> {
+        self.controller.recall(rows)?;
+        self.pump(self.world.time());
+        Ok(())
     }
 }
 

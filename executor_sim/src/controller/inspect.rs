@@ -1,29 +1,33 @@
 //! What the robot's controller shows of itself.
 
+use agent_core::model::Symbol;
 use agent_link::Inspect;
 use serde_json::{Value, json};
 
-use super::{Controller, Record, Run};
+use super::Controller;
+use super::memory::Record;
 use crate::Place;
 
 impl Inspect for Controller {
     fn status(&self) -> Value {
         let action = self.active.as_ref().map(|active| {
-            let mut shown = record(&active.job);
-            shown["stopping"] = json!(active.run != Run::Going);
+            let mut shown = record(&active.begun.job);
+            shown["stopping"] = json!(active.is_stopping());
             shown
         });
         json!({
             "phase": match &self.active {
                 None => "idle",
-                Some(active) if active.run == Run::Going => "executing",
-                Some(_) => "stopping",
+                Some(active) if active.is_stopping() => "stopping",
+                Some(_) => "executing",
             },
             "action": action,
             "stack_depth": self.memory.depth(),
             // Where it stood last: while it drives, only the world knows.
             "stood": self.surroundings.place().map(Place::to_string),
             "faults": self.faults.to_string(),
+            "halting": self.halt.is_some(),
+            "gone": self.gone.iter().map(Symbol::as_str).collect::<Vec<_>>(),
         })
     }
 

@@ -3,9 +3,8 @@
 use agent_core::model::{Action, Symbol, Time};
 use agent_core::protocol::{ActionId, Answer, Happening, Instruction, Report};
 
-use super::{Controller, End, Record, Run, Skill};
-use crate::Place;
-use crate::faults::Fault;
+use super::{Controller, End, Record, Skill};
+use crate::{Place, WORLD};
 
 impl Controller {
     pub(super) fn instructed(
@@ -17,13 +16,13 @@ impl Controller {
         match instruction {
             Instruction::Execute { id, action, .. } => self.execute(now, from, id, action),
             Instruction::Suspend { id } => self.suspend(now, from, &id),
-            Instruction::Resume { id, .. } => self.resume(now, &id),
+            Instruction::Resume { id, .. } => self.resume(now, &from, &id),
             Instruction::Clear { id } => self.clear(now, &id),
         }
     }
 
     fn execute(&mut self, now: Time, superior: Symbol, id: ActionId, action: Action) -> Answer {
-        if self.is_active(&id) {
+        if self.active(&id).is_some() {
             return Answer::Accepted;
         }
         if self.memory.record(&id).is_some() {
@@ -40,12 +39,21 @@ impl Controller {
             Err(reason) => return rejected(reason),
         };
         let (rest, suspendable) = skill;
+        let gone = self.gone.contains(&superior);
+        if gone && !suspendable {
+            return rejected(format!("`{superior}`, which wants it, is gone"));
+        }
         let job = Record {
             id: id.clone(),
             superior,
             action: action.clone(),
             rest,
         };
+        if gone {
+            // Nobody could stop it.
+            self.keep(now, job);
+            return Answer::Accepted;
+        }
         let fault = self.faults.next_action();
         self.set_going(now, job.clone(), suspendable, fault);
         self.event(now, &job, Happening::ActionStarted { id, action });
@@ -63,17 +71,24 @@ impl Controller {
                     return Err(format!("there is no door `{door}`"));
                 }
             }
-            Skill::Speak { .. } => {}
+            Skill::Speak { .. } | Skill::Deed { .. } => {}
         }
         Ok((skill, suspendable))
     }
 
     fn free_to_begin(&self) -> Result<&Place, String> {
         if let Some(active) = &self.active {
-            return Err(format!("the robot is busy with {}", active.job.action));
+            let action = &active.begun.job.action;
+            if self.halt.is_none() {
+                return Err(format!("the robot is busy with {action}"));
+            }
         }
-        self.surroundings
-            .place()
+        if self.gone.contains(WORLD) {
+            return Err("the robot's motors and sensors cannot be reached".to_owned());
+        }
+        let place = self.surroundings.place();
+        place
+            .filter(|_| self.halt.is_none())
             .ok_or_else(|| "the robot has not said yet where it stands".to_owned())
     }
 
@@ -93,22 +108,12 @@ impl Controller {
     }
 
     fn suspend(&mut self, now: Time, from: Symbol, id: &ActionId) -> Answer {
-        if let Some(active) = self.active.as_mut().filter(|active| active.job.id == *id) {
-            if active.run != Run::Going {
+        if let Some(active) = self.active(id) {
+            let finishes_in = active.expected_end.since(now);
+            if self.try_to_stop(now) {
                 return Answer::Suspending;
             }
-            if !active.suspendable || active.fault == Some(Fault::RefusedSuspension) {
-                return Answer::Refused {
-                    finishes_in: active.expected_end.since(now),
-                };
-            }
-            active.run = Run::Stopping;
-            if let Some(Fault::LateStop { delay }) = active.fault {
-                active.errand_at = Some(now + delay);
-            } else {
-                self.stop_motors();
-            }
-            return Answer::Suspending;
+            return Answer::Refused { finishes_in };
         }
         if let Some(record) = self.memory.record(id) {
             // Who asks again has not heard the report: it has started anew since.
@@ -126,19 +131,26 @@ impl Controller {
         }
     }
 
-    fn resume(&mut self, now: Time, id: &ActionId) -> Answer {
-        if let Some(active) = self.active.as_ref().filter(|active| active.job.id == *id) {
-            return match active.run {
-                Run::Going => Answer::Accepted,
-                Run::Stopping | Run::Failing => rejected(format!("{id} has not stopped yet")),
+    fn resume(&mut self, now: Time, from: &Symbol, id: &ActionId) -> Answer {
+        if let Some(active) = self.active(id) {
+            return if active.is_stopping() {
+                rejected(format!("{id} has not stopped yet"))
+            } else {
+                Answer::Accepted
             };
         }
-        if self.memory.record(id).is_none() {
+        let Some(record) = self.memory.record(id) else {
             return match self.over(id) {
                 Some(Some(outcome)) => Answer::Finished { outcome },
                 Some(None) => rejected(format!("{id} was cleared")),
                 None => rejected(format!("nothing is known of {id}")),
             };
+        };
+        if self.gone.contains(from) {
+            // Nobody could stop it: it is as if it had been suspended at once.
+            let record = record.clone();
+            self.report_suspended(&record);
+            return Answer::Accepted;
         }
         let place = match self.free_to_begin() {
             Ok(place) => place.clone(),
@@ -152,7 +164,7 @@ impl Controller {
         {
             let reason = format!("the record does not fit: the robot stands {place}");
             let blocked_by = Vec::new();
-            self.end(now, job, End::Failure { reason, blocked_by });
+            self.end_job(now, job, End::Failure { reason, blocked_by });
             return Answer::Accepted;
         }
         // It has been suspended, so it can be.
@@ -163,14 +175,15 @@ impl Controller {
     }
 
     fn clear(&mut self, now: Time, id: &ActionId) -> Answer {
-        if let Some(active) = self.active.as_ref().filter(|active| active.job.id == *id) {
-            return rejected(match active.run {
-                Run::Going => format!("{id} is running: suspend it first"),
-                Run::Stopping | Run::Failing => format!("{id} has not stopped yet"),
+        if let Some(active) = self.active(id) {
+            return rejected(if active.is_stopping() {
+                format!("{id} has not stopped yet")
+            } else {
+                format!("{id} is running: suspend it first")
             });
         }
         if let Some(job) = self.memory.take(id) {
-            self.memory.end(id.clone(), job.rest.clone(), End::Cleared);
+            self.memory.end(&job, End::Cleared);
             let (id, action) = (id.clone(), job.action.clone());
             self.event(now, &job, Happening::RecordCleared { id, action });
             return Answer::Accepted;
@@ -184,30 +197,21 @@ impl Controller {
 
     /// The outcome of an action that is over; `Some(None)` if it was cleared.
     fn over(&mut self, id: &ActionId) -> Option<Option<Report>> {
-        let (skill, end) = self.memory.over(id)?;
-        if *end == End::Cleared {
+        let over = self.memory.over(id)?;
+        if over.end == End::Cleared {
             return Some(None);
         }
-        let (skill, end) = (skill.clone(), end.clone());
+        let (skill, end) = (over.skill.clone(), over.end.clone());
         Some(Some(self.outcome(&skill, &end)))
     }
 
     pub(super) fn report_suspended(&mut self, record: &Record) {
         let facts = if self.stands() {
-            self.surroundings.tell(match &record.rest {
-                Skill::Drive { arc, .. } => Some(arc),
-                Skill::Speak { .. } | Skill::SetDoor { .. } => None,
-            })
+            self.surroundings.tell(record.rest.arc())
         } else {
             Vec::new()
         };
         self.report(record, Report::Suspended { facts });
-    }
-
-    fn is_active(&self, id: &ActionId) -> bool {
-        self.active
-            .as_ref()
-            .is_some_and(|active| active.job.id == *id)
     }
 }
 

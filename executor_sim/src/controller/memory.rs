@@ -1,9 +1,11 @@
 //! What the robot remembers of actions that do not run.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, BTreeSet};
 
 use agent_core::model::{Action, Fact, Symbol};
 use agent_core::protocol::ActionId;
+use agent_core::protocol::{Ledger, Rows, Unreadable, read_rows};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::Skill;
@@ -11,6 +13,9 @@ use super::Skill;
 /// How many actions that are over are remembered. A superior asks again after seconds, not after
 /// a thousand actions.
 const REMEMBERED: usize = 1000;
+
+const RECORD: &str = "m/record/";
+const OVER: &str = "m/over/";
 
 /// What is needed to resume an action (the paper, section 4: the action executor's record).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,34 +37,41 @@ pub(super) enum End {
         reason: String,
         blocked_by: Vec<Fact>,
     },
+    /// It must not be done twice, and nobody can tell whether it was done.
+    Unknown {
+        reason: String,
+    },
     /// The superior has dropped it.
     Cleared,
 }
 
-/// What a robot must not forget when its controller's process dies: the records of suspended
-/// actions, how others have ended, and which one was running.
-///
-/// Whoever keeps it durable writes it down before the message is acknowledged that changed it, and
-/// hands it to [`Controller::remembering`](super::Controller::remembering).
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Memory {
-    /// Set only in copies that are handed out: while the controller lives, it knows itself.
-    pub(super) running: Option<Record>,
+/// An action that is over.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Over {
+    pub(super) id: ActionId,
+    pub(super) superior: Symbol,
+    pub(super) skill: Skill,
+    pub(super) end: End,
+}
+
+/// Suspended actions, and how others have ended. Both are written down entry by entry.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Memory {
     /// In the order of suspension.
-    records: Vec<Record>,
+    records: Numbered<Record>,
     /// Oldest first.
-    over: VecDeque<(ActionId, Skill, End)>,
+    over: Numbered<Over>,
 }
 
 impl Memory {
     /// How many suspended actions can be resumed.
     pub(super) fn depth(&self) -> usize {
-        self.records.len()
+        self.records.entries.len()
     }
 
     /// Suspended actions, the latest last.
     pub(super) fn records(&self) -> impl Iterator<Item = &Record> {
-        self.records.iter()
+        self.records.entries.values()
     }
 
     pub(super) fn keep(&mut self, record: Record) {
@@ -67,25 +79,116 @@ impl Memory {
     }
 
     pub(super) fn record(&self, id: &ActionId) -> Option<&Record> {
-        self.records.iter().find(|record| record.id == *id)
+        self.records().find(|record| record.id == *id)
     }
 
     pub(super) fn take(&mut self, id: &ActionId) -> Option<Record> {
-        let at = self.records.iter().position(|record| record.id == *id)?;
-        Some(self.records.remove(at))
+        let mut numbered = self.records.entries.iter();
+        let number = *numbered.find(|(_, record)| record.id == *id)?.0;
+        self.records.remove(number)
     }
 
-    pub(super) fn end(&mut self, id: ActionId, skill: Skill, end: End) {
-        if self.over.len() == REMEMBERED {
-            self.over.pop_front();
+    pub(super) fn end(&mut self, job: &Record, end: End) {
+        if self.over.entries.len() >= REMEMBERED
+            && let Some((&oldest, _)) = self.over.entries.first_key_value()
+        {
+            self.over.remove(oldest);
         }
-        self.over.push_back((id, skill, end));
+        self.over.push(Over {
+            id: job.id.clone(),
+            superior: job.superior.clone(),
+            skill: job.rest.clone(),
+            end,
+        });
     }
 
     /// How the action is over; `None` if it is not, or if that was long ago.
-    pub(super) fn over(&self, id: &ActionId) -> Option<(&Skill, &End)> {
+    pub(super) fn over(&self, id: &ActionId) -> Option<&Over> {
         // From the back: who asks, asks about what has just ended.
-        let (_, skill, end) = self.over.iter().rev().find(|(over, ..)| over == id)?;
-        Some((skill, end))
+        let mut latest_first = self.over.entries.values().rev();
+        latest_first.find(|over| over.id == *id)
+    }
+
+    /// Whoever had those begun will not ask for them again. Gives back what was suspended.
+    pub(super) fn forget(&mut self, superior: &Symbol) -> Vec<Record> {
+        self.over.extract(|over| over.superior == *superior);
+        self.records.extract(|record| record.superior == *superior)
+    }
+
+    pub(super) fn write_down(&mut self, ledger: &mut Ledger) {
+        self.records.write_down(RECORD, ledger);
+        self.over.write_down(OVER, ledger);
+    }
+
+    pub(super) fn recall(rows: &Rows) -> Result<Self, Unreadable> {
+        Ok(Self {
+            records: Numbered::recall(RECORD, rows)?,
+            over: Numbered::recall(OVER, rows)?,
+        })
+    }
+}
+
+/// Entries in their order, of which only what is different is written again.
+#[derive(Clone, Debug)]
+struct Numbered<T> {
+    entries: BTreeMap<u64, T>,
+    next: u64,
+    /// Come or gone since it was written down.
+    touched: BTreeSet<u64>,
+}
+
+impl<T> Default for Numbered<T> {
+    fn default() -> Self {
+        Self {
+            entries: BTreeMap::new(),
+            next: 1,
+            touched: BTreeSet::new(),
+        }
+    }
+}
+
+impl<T: Serialize + DeserializeOwned> Numbered<T> {
+    fn push(&mut self, entry: T) {
+        self.entries.insert(self.next, entry);
+        self.touched.insert(self.next);
+        self.next = self.next.saturating_add(1);
+    }
+
+    fn remove(&mut self, number: u64) -> Option<T> {
+        self.touched.insert(number);
+        self.entries.remove(&number)
+    }
+
+    fn extract(&mut self, which: impl Fn(&T) -> bool) -> Vec<T> {
+        let numbered = self.entries.iter();
+        let numbers: Vec<u64> = numbered
+            .filter(|(_, entry)| which(entry))
+            .map(|(number, _)| *number)
+            .collect();
+        let taken = numbers.into_iter();
+        taken.filter_map(|number| self.remove(number)).collect()
+    }
+
+    fn write_down(&mut self, prefix: &str, ledger: &mut Ledger) {
+        for number in std::mem::take(&mut self.touched) {
+            let key = format!("{prefix}{number:020}");
+            match self.entries.get(&number) {
+                Some(entry) => ledger.put(key, entry),
+                None => ledger.remove(&key),
+            }
+        }
+    }
+
+    fn recall(prefix: &str, rows: &Rows) -> Result<Self, Unreadable> {
+        let mut numbered = Self::default();
+        for row in read_rows(rows, prefix) {
+            let (number, entry) = row?;
+            let number: u64 = number
+                .parse()
+                .map_err(|error| Unreadable::new(format!("{prefix}{number}"), error))?;
+            numbered.entries.insert(number, entry);
+            numbered.next = numbered.next.max(number.saturating_add(1));
+        }
+        Ok(numbered)
     }
 }

@@ -1,36 +1,42 @@
 //! The robot's executor: one action at a time, and records of those that were suspended.
 
+mod active;
+mod durable;
 #[cfg(feature = "process")]
 mod inspect;
 mod instructions;
 mod memory;
+mod neighbours;
+mod restart;
 mod sensors;
 mod skill;
 mod surroundings;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
-use agent_core::model::{Domain, ExecutionModel, FactChange, Time};
+use agent_core::model::{Domain, ExecutionModel, FactChange, Symbol, Time};
+use agent_core::protocol::Ledger;
 use agent_core::protocol::{Event, Happening, Input, Machine, Output, Reply, Report};
 
 use crate::faults::Fault;
 use crate::refusal::refuse;
 use crate::{Faults, Floor, MotorCommand, Sensor, Ticket};
 
-use memory::{End, Record};
+use active::{Active, Begun, Run};
+use memory::{End, Memory, Record};
 use surroundings::Surroundings;
 
-pub use memory::Memory;
 pub use skill::{Skill, Vocabulary, VocabularyError};
 
 /// What superiors talk to. It knows the world only by its sensors.
 ///
 /// Invariant: the motors carry out at most one command of its, that of the active action; it sends
 /// one only to answer an instruction. After a start it first halts everything and accepts nothing
-/// before the sensors have said where the robot stands.
+/// before the sensors have said where the robot stands. The action that was running is suspended
+/// then, or it ends: as what the sensors tell of it, or unknown.
 ///
 /// An action belongs to the superior that had it begun: that one gets its reports. Any superior
-/// may suspend it.
+/// may suspend it. If its superior is gone, it is suspended, for then nobody could stop it.
 #[derive(Clone, Debug)]
 pub struct Controller {
     vocabulary: Vocabulary,
@@ -39,72 +45,38 @@ pub struct Controller {
     memory: Memory,
     active: Option<Active>,
     last_ticket: u64,
+    /// Everything was told to halt, and has not said yet that it has.
+    halt: Option<Ticket>,
+    /// Neighbours that are not there.
+    gone: BTreeSet<Symbol>,
     outputs: VecDeque<Output<MotorCommand>>,
-}
-
-/// The action that runs.
-#[derive(Clone, Debug)]
-struct Active {
-    /// What would be recorded if it were suspended before it has begun.
-    job: Record,
-    ticket: Ticket,
-    run: Run,
-    suspendable: bool,
-    /// Share of the usual speed.
-    pace: f64,
-    expected_end: Time,
-    fault: Option<Fault>,
-    /// When something is to be done about the fault.
-    errand_at: Option<Time>,
-}
-
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Run {
-    Going,
-    /// A superior has asked for it, and been told yes.
-    Stopping,
-    /// The list of faults has it so.
-    Failing,
+    ledger: Ledger,
 }
 
 impl Controller {
-    /// One that has just started and remembers nothing.
+    /// One that has just started and remembers nothing, unless it [recalls] it.
+    ///
+    /// [recalls]: agent_core::protocol::Durable::recall
     pub fn new(
         domain: &Domain,
         model: &ExecutionModel,
         floor: Floor,
         faults: Faults,
     ) -> Result<Self, VocabularyError> {
-        Self::remembering(domain, model, floor, faults, Memory::default())
-    }
-
-    /// One that has just started, with what the process before it wrote down. An action that was
-    /// running then has failed: the robot stops, and its superior is told.
-    pub fn remembering(
-        domain: &Domain,
-        model: &ExecutionModel,
-        floor: Floor,
-        faults: Faults,
-        memory: Memory,
-    ) -> Result<Self, VocabularyError> {
-        Ok(Self {
+        let mut controller = Self {
             vocabulary: Vocabulary::new(domain, model)?,
             surroundings: Surroundings::new(floor),
             faults,
-            memory,
+            memory: Memory::default(),
             active: None,
             last_ticket: 0,
-            outputs: VecDeque::from([Output::Local(MotorCommand::Halt)]),
-        })
-    }
-
-    /// What has to be written down.
-    pub fn memory(&self) -> Memory {
-        let mut memory = self.memory.clone();
-        if let Some(active) = &self.active {
-            memory.running = Some(active.job.clone());
-        }
-        memory
+            halt: None,
+            gone: BTreeSet::new(),
+            outputs: VecDeque::new(),
+            ledger: Ledger::default(),
+        };
+        controller.halt();
+        Ok(controller)
     }
 
     /// What is true of the robot's place and of all doors, and that nothing else is: for a
@@ -120,16 +92,13 @@ impl Controller {
 
     /// Whether the robot's place is what was last heard of it.
     fn stands(&self) -> bool {
-        let drives = self
-            .active
-            .as_ref()
-            .is_some_and(|active| matches!(active.job.rest, Skill::Drive { .. }));
+        let drives = self.active.as_ref().is_some_and(Active::drives);
         self.surroundings.place().is_some() && !drives
     }
 
     /// Has the motors do the job. There is no active action.
     fn set_going(&mut self, now: Time, job: Record, suspendable: bool, fault: Option<Fault>) {
-        self.last_ticket += 1;
+        self.last_ticket = self.last_ticket.saturating_add(1);
         let ticket = Ticket(self.last_ticket);
         let pace = match fault {
             Some(Fault::Slow { pace }) => pace,
@@ -142,7 +111,9 @@ impl Controller {
                 .floor()
                 .passage(arc)
                 .map_or(0.0, |passage| passage.length_m),
-            Skill::Speak { duration_s } | Skill::SetDoor { duration_s, .. } => *duration_s,
+            Skill::Speak { duration_s }
+            | Skill::SetDoor { duration_s, .. }
+            | Skill::Deed { duration_s, .. } => *duration_s,
         };
         let command = match &job.rest {
             Skill::Drive { arc, to } => MotorCommand::Drive {
@@ -165,15 +136,25 @@ impl Controller {
                 open: *open,
                 duration_s: duration_s / pace,
             },
+            Skill::Deed { what, duration_s } => MotorCommand::Deed {
+                ticket,
+                what: what.clone(),
+                duration_s: duration_s / pace,
+            },
         };
         self.report(&job, Report::Started);
         self.outputs.push_back(Output::Local(command));
         self.active = Some(Active {
-            job,
-            ticket,
-            run: Run::Going,
-            suspendable,
-            pace,
+            begun: Begun {
+                job,
+                ticket,
+                at: now,
+                suspendable,
+                pace,
+                run: Run::Going,
+                cut: None,
+                disowned: false,
+            },
             expected_end: now + Time::from_secs(expected_s / pace),
             fault,
             errand_at: None,
@@ -186,13 +167,14 @@ impl Controller {
             return;
         };
         active.errand_at = None;
-        let ticket = active.ticket;
-        self.outputs.push_back(Output::Local(match active.job.rest {
+        let ticket = active.begun.ticket;
+        let command = match active.begun.job.rest {
             Skill::Drive { .. } => MotorCommand::Brake { ticket },
             Skill::Speak { .. } => MotorCommand::Hush { ticket },
             // Only a fault stops it: no superior may.
-            Skill::SetDoor { .. } => MotorCommand::Halt,
-        }));
+            Skill::SetDoor { .. } | Skill::Deed { .. } => return self.halt(),
+        };
+        self.outputs.push_back(Output::Local(command));
     }
 
     /// Does what the fault has in store, if its time has come.
@@ -200,21 +182,30 @@ impl Controller {
         if let Some(active) = &mut self.active
             && active.errand_at.is_some_and(|time| time <= now)
         {
-            if active.run == Run::Going {
-                active.run = Run::Failing;
+            if active.begun.run == Run::Going {
+                active.begun.run = Run::Failing;
             }
             self.stop_motors();
         }
     }
 
+    /// The action that was active is over.
+    fn end(&mut self, now: Time, begun: Begun, end: End) {
+        if begun.disowned {
+            self.drop_disowned(&begun.job);
+        } else {
+            self.end_job(now, begun.job, end);
+        }
+    }
+
     /// An action is over.
-    fn end(&mut self, now: Time, job: Record, end: End) {
+    fn end_job(&mut self, now: Time, job: Record, end: End) {
         let report = self.outcome(&job.rest, &end);
         let failure = match &end {
-            End::Failure { reason, .. } => Some(reason.clone()),
+            End::Failure { reason, .. } | End::Unknown { reason } => Some(reason.clone()),
             End::Success | End::Cleared => None,
         };
-        self.memory.end(job.id.clone(), job.rest.clone(), end);
+        self.memory.end(&job, end);
         self.report(&job, report);
         let (id, action) = (job.id.clone(), job.action.clone());
         self.event(
@@ -233,11 +224,7 @@ impl Controller {
     fn outcome(&mut self, skill: &Skill, end: &End) -> Report {
         let mut facts = Vec::new();
         if self.stands() {
-            let arc = match skill {
-                Skill::Drive { arc, .. } => Some(arc),
-                Skill::Speak { .. } | Skill::SetDoor { .. } => None,
-            };
-            facts = self.surroundings.tell(arc);
+            facts = self.surroundings.tell(skill.arc());
         }
         if let Skill::SetDoor { door, .. } = skill {
             facts.push(self.surroundings.door_fact(door));
@@ -252,6 +239,10 @@ impl Controller {
                     blocked_by: blocked_by.clone(),
                 }
             }
+            End::Unknown { reason } => Report::Unknown {
+                reason: reason.clone(),
+                facts,
+            },
             End::Success | End::Cleared => Report::Success { facts },
         }
     }
@@ -300,6 +291,14 @@ impl Machine for Controller {
             }
             Input::Local(sensor) => {
                 self.sensed(now, sensor);
+                None
+            }
+            Input::Neighbour { name, there } => {
+                self.neighbour(now, name, there);
+                None
+            }
+            Input::Reborn { name } => {
+                self.reborn(now, &name);
                 None
             }
             other => refuse(other, "a robot"),

@@ -6,8 +6,9 @@ use std::fmt;
 use agent_core::model::{Action, Atom, Domain, ExecutionModel, Number, Pattern, Symbol, Term};
 use serde::{Deserialize, Serialize};
 
-/// How long a door takes to open or close where the execution model gives no constant.
-const DOOR_DURATION_S: f64 = 2.0;
+/// How long a door takes to open or close, and a deed to be done, where the execution model gives no
+/// constant.
+const DEFAULT_DURATION_S: f64 = 2.0;
 
 /// What a robot can do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,6 +34,23 @@ pub enum Skill {
         /// How long that takes.
         duration_s: f64,
     },
+    /// `(deed NAME ARG…)`: whatever that is to people. It is done when the action's time is over.
+    Deed {
+        /// In the model's own words.
+        what: Action,
+        /// How long that takes.
+        duration_s: f64,
+    },
+}
+
+impl Skill {
+    /// The arc that it drives along.
+    pub(super) fn arc(&self) -> Option<&Symbol> {
+        match self {
+            Self::Drive { arc, .. } => Some(arc),
+            Self::Speak { .. } | Self::SetDoor { .. } | Self::Deed { .. } => None,
+        }
+    }
 }
 
 /// Why the execution model was refused, in the words of its author.
@@ -44,7 +62,7 @@ pub enum VocabularyError {
     /// Not in the vocabulary.
     #[error(
         "action `{action}`: a robot cannot perform `{perform}`; it knows (drive ARC NODE), \
-         (speak SECONDS) and (set-door DOOR open|closed)"
+         (speak SECONDS), (set-door DOOR open|closed) and (deed NAME ARG…)"
     )]
     UnknownSkill {
         /// The action.
@@ -75,8 +93,13 @@ pub enum VocabularyError {
         wanted: &'static str,
     },
     /// The robot lets no door hang half open.
-    #[error("action `{0}` cannot be suspended: a robot that moves a door moves it to the end")]
-    SuspendedDoor(Symbol),
+    #[error("action `{action}` cannot be suspended: a robot ends what it has begun of `{perform}`")]
+    NotSuspendable {
+        /// The action.
+        action: Symbol,
+        /// What stands there.
+        perform: Symbol,
+    },
 }
 
 /// Every action that a robot can be told to do.
@@ -90,6 +113,7 @@ struct Entry {
     parameters: usize,
     perform: Pattern,
     suspendable: bool,
+    once: bool,
     duration_s: Option<f64>,
 }
 
@@ -108,8 +132,11 @@ impl Vocabulary {
                 .ok_or_else(|| VocabularyError::UnknownAction(action.clone()))?;
             check(action, perform)?;
             let suspendable = about.suspension.is_some();
-            if suspendable && perform.name == "set-door" {
-                return Err(VocabularyError::SuspendedDoor(action.clone()));
+            if suspendable && matches!(perform.name.as_str(), "set-door" | "deed") {
+                return Err(VocabularyError::NotSuspendable {
+                    action: action.clone(),
+                    perform: perform.name.clone(),
+                });
             }
             let duration_s = match about.duration_s {
                 Some(Number::Constant(duration_s)) => Some(duration_s),
@@ -121,11 +148,18 @@ impl Vocabulary {
                     parameters: operator.parameters.len(),
                     perform: perform.clone(),
                     suspendable,
+                    once: !about.repeatable,
                     duration_s,
                 },
             );
         }
         Ok(Self { entries })
+    }
+
+    /// Whether that action must not be done again when nobody knows if it was done (decision 11).
+    pub fn is_once(&self, action: &Action) -> bool {
+        let entry = self.entries.get(&action.name);
+        entry.is_some_and(|entry| entry.once)
     }
 
     /// What that action is to the robot, and whether it can be suspended; or in words why it is
@@ -159,6 +193,7 @@ fn check(action: &Symbol, perform: &Pattern) -> Result<(), VocabularyError> {
     let wanted = match perform.name.as_str() {
         "drive" | "set-door" => 2,
         "speak" => 1,
+        "deed" => perform.args.len().max(1),
         _ => {
             return Err(VocabularyError::UnknownSkill {
                 action: action.clone(),
@@ -212,9 +247,16 @@ fn parse(performed: &Atom, duration_s: Option<f64>) -> Result<Skill, (Symbol, &'
             Ok(Skill::SetDoor {
                 door: door.clone(),
                 open,
-                duration_s: duration_s.unwrap_or(DOOR_DURATION_S),
+                duration_s: duration_s.unwrap_or(DEFAULT_DURATION_S),
             })
         }
+        ("deed", [name, args @ ..]) => Ok(Skill::Deed {
+            what: Atom {
+                name: name.clone(),
+                args: args.to_vec(),
+            },
+            duration_s: duration_s.unwrap_or(DEFAULT_DURATION_S),
+        }),
         // `check` has let through nothing else.
         _ => Err((performed.name.clone(), "something that a robot performs")),
     }
@@ -228,6 +270,11 @@ impl fmt::Display for Skill {
             Self::SetDoor { door, open, .. } => {
                 let state = if *open { "open" } else { "closed" };
                 write!(f, "(set-door {door} {state})")
+            }
+            Self::Deed { what, .. } => {
+                write!(f, "(deed {}", what.name)?;
+                what.args.iter().try_for_each(|arg| write!(f, " {arg}"))?;
+                f.write_str(")")
             }
         }
     }

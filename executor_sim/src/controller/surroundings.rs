@@ -3,8 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use agent_core::model::{Fact, FactChange, Symbol};
+use agent_core::protocol::{Ledger, Rows, Unreadable, read_row};
 
 use crate::{Floor, Place};
+
+const DOORS: &str = "m/doors";
+const TOLD: &str = "m/told";
 
 /// Where the robot stood last, which doors are open, and what of it has been told.
 #[derive(Clone, Debug)]
@@ -43,8 +47,30 @@ impl Surroundings {
         self.place = Some(place);
     }
 
-    pub(super) fn set_door(&mut self, door: &Symbol, open: bool) {
-        self.doors.insert(door.clone(), open);
+    /// Until the sensors say so again.
+    pub(super) fn forget_place(&mut self) {
+        self.place = None;
+    }
+
+    /// Whether that is news.
+    pub(super) fn set_door(&mut self, door: &Symbol, open: bool) -> bool {
+        self.doors.insert(door.clone(), open) != Some(open)
+    }
+
+    pub(super) fn write_down(&self, ledger: &mut Ledger) {
+        ledger.put(DOORS.to_owned(), &self.doors);
+        ledger.put(TOLD.to_owned(), &self.told);
+    }
+
+    /// Where the robot stands has to be found out anew.
+    pub(super) fn recall(&mut self, rows: &Rows) -> Result<(), Unreadable> {
+        let doors: BTreeMap<Symbol, bool> = read_row(rows, DOORS)?.unwrap_or_default();
+        if let Some(door) = doors.keys().find(|door| !self.doors.contains_key(*door)) {
+            return Err(Unreadable::new(DOORS, format!("there is no door `{door}`")));
+        }
+        self.doors.extend(doors);
+        self.told = read_row(rows, TOLD)?.unwrap_or_default();
+        Ok(())
     }
 
     /// Whether the robot stands on an arc that leads through that door.
@@ -85,6 +111,14 @@ impl Surroundings {
             .collect();
         self.told = now;
         changes
+    }
+
+    /// The same, after a time in which anything may have happened; of no interest to anybody if
+    /// nothing was told before: whoever wants to know has it [announced](Self::announce).
+    pub(super) fn tell_again(&mut self) -> Vec<FactChange> {
+        let was_told = !self.told.is_empty();
+        let changes = self.tell(None);
+        if was_told { changes } else { Vec::new() }
     }
 
     /// The same for a superior of whom nobody knows what it believes: nothing else is true of the

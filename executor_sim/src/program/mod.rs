@@ -15,8 +15,7 @@ use crate::{Floor, FloorError, SetupError, VocabularyError};
 
 /// The controller's name.
 pub const EXECUTOR: &str = "executor";
-/// The world's name.
-pub const WORLD: &str = "world";
+pub use crate::WORLD;
 
 /// What is run.
 #[derive(Args, Clone, Debug)]

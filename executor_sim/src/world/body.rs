@@ -54,6 +54,17 @@ pub(super) enum Ending {
     Halted,
 }
 
+/// How a drive has ended.
+pub(super) struct Settled {
+    pub(super) ticket: Ticket,
+    pub(super) arc: Symbol,
+    pub(super) to: Symbol,
+    pub(super) driven_m: f64,
+    pub(super) arrived: bool,
+    /// What the body says of it.
+    pub(super) sensor: Option<Sensor>,
+}
+
 /// What can be seen of the body at one moment.
 pub(super) struct Seen {
     pub(super) place: Place,
@@ -64,12 +75,12 @@ pub(super) struct Seen {
 
 impl Body {
     /// Standing at a place of the floor.
-    pub(super) fn new(place: Place, heading_rad: f64) -> Self {
+    pub(super) fn new(place: Place, heading_rad: f64, odometer_m: f64) -> Self {
         Self {
             place,
             heading: UnitComplex::new(heading_rad),
             motion: None,
-            odometer_m: 0.0,
+            odometer_m,
         }
     }
 
@@ -238,7 +249,7 @@ impl Body {
     }
 
     /// The motion has ended: stands, and says so, unless it was halted.
-    pub(super) fn settle(&mut self) -> Option<Sensor> {
+    pub(super) fn settle(&mut self) -> Option<Settled> {
         let motion = self.motion.take()?;
         let gone_m = motion.profile.distance_m();
         self.place = motion.place(&self.place, gone_m);
@@ -247,10 +258,13 @@ impl Body {
         let ticket = motion.ticket;
         let place = self.place.clone();
         let driven_m = motion.before_m + gone_m;
-        match motion.ending {
+        let to = Place::Node {
+            node: motion.to.clone(),
+        };
+        let sensor = match motion.ending {
             Ending::Arrived => Some(Sensor::Arrived {
                 ticket,
-                node: motion.to,
+                node: motion.to.clone(),
                 driven_m,
             }),
             Ending::Stopped => Some(Sensor::Stopped {
@@ -266,7 +280,15 @@ impl Body {
             }),
             // Who halts a body asks no more about its drive.
             Ending::Halted => None,
-        }
+        };
+        Some(Settled {
+            ticket,
+            arrived: self.place == to,
+            arc: motion.arc,
+            to: motion.to,
+            driven_m,
+            sensor,
+        })
     }
 }
 

@@ -1,16 +1,21 @@
 //! The simulated reality: doors, one robot's body, and its voice.
 
 mod body;
+mod done;
+mod durable;
 
 use std::collections::{BTreeMap, VecDeque};
 
-use agent_core::model::{FactChange, Symbol, Time};
-use agent_core::protocol::{Input, Machine, Output, Reply};
+use agent_core::model::{Action, FactChange, Symbol, Time};
+use agent_core::protocol::{Input, Ledger, Machine, Output, Reply};
 use nalgebra::Isometry2;
 
 use crate::refusal::refuse;
 use crate::{Floor, MotorCommand, MoverSpec, Place, Pose, Sensor, SetupError, Ticket};
 use body::{Body, Ending};
+use done::Chronicle;
+
+pub use done::{Doing, Done};
 
 /// What is there whether or not anybody controls it.
 ///
@@ -28,9 +33,16 @@ pub struct World {
     body: Body,
     speech: Option<Span>,
     door_work: Option<DoorWork>,
+    deed: Option<(Span, Action)>,
     /// Somebody has halted everything and waits for standstill.
-    halting: bool,
+    halting: Option<Ticket>,
+    /// Whether its sensors can tell afterwards what was done.
+    tells: bool,
+    chronicle: Chronicle,
+    /// When something was last seen to.
+    now: Time,
     outputs: VecDeque<Sensor>,
+    ledger: Ledger,
 }
 
 #[derive(Clone, Debug)]
@@ -53,6 +65,7 @@ enum Due {
     Motion,
     Speech,
     Door,
+    Deed,
 }
 
 impl World {
@@ -69,16 +82,47 @@ impl World {
         {
             return Err(SetupError::Immobile(spec));
         }
-        Ok(Self {
+        let mut world = Self {
             doors: floor.doors().clone(),
             floor,
             spec,
-            body: Body::new(start, 0.0),
+            body: Body::new(start, 0.0, 0.0),
             speech: None,
             door_work: None,
-            halting: false,
+            deed: None,
+            halting: None,
+            tells: true,
+            chronicle: Chronicle::default(),
+            now: Time::ZERO,
             outputs: VecDeque::new(),
-        })
+            ledger: Ledger::default(),
+        };
+        // A controller that outlives the world learns by it that this is another one.
+        world.tell_pose(Time::ZERO);
+        Ok(world)
+    }
+
+    /// One whose sensors cannot tell afterwards what was done: whoever was not there when a deed
+    /// ended will never know.
+    #[must_use]
+    pub fn without_hindsight(mut self) -> Self {
+        self.tells = false;
+        self
+    }
+
+    /// When something was last seen to. A world that is started again goes on from then.
+    pub fn time(&self) -> Time {
+        self.now
+    }
+
+    /// The latest things that were done, oldest first.
+    pub fn done(&self) -> impl DoubleEndedIterator<Item = &Done> + ExactSizeIterator {
+        self.chronicle.kept.iter()
+    }
+
+    /// How many things were done or broken off, over all starts.
+    pub fn done_count(&self) -> u64 {
+        self.chronicle.head.count
     }
 
     /// Where the body is at that time, if nothing happens before: on the way, this is the arc and
@@ -140,6 +184,7 @@ impl World {
             self.door_work
                 .as_ref()
                 .map(|work| (work.span.end, Due::Door)),
+            self.deed.as_ref().map(|(span, _)| (span.end, Due::Deed)),
         ]
         .into_iter()
         .flatten()
@@ -151,12 +196,14 @@ impl World {
         while let Some((time, due)) = self.next_due().filter(|(time, _)| *time <= now) {
             match due {
                 Due::Motion => {
-                    self.outputs.extend(self.body.settle());
+                    self.settle(time);
                     self.tell_pose(time);
                     self.tell_if_halted();
                 }
                 Due::Speech => {
-                    if let Some(Span { ticket, .. }) = self.speech.take() {
+                    if let Some(span) = self.speech.take() {
+                        self.note_speech(time, &span, true);
+                        let ticket = span.ticket;
                         self.outputs.push_back(Sensor::SpeechEnded { ticket });
                     }
                 }
@@ -164,12 +211,55 @@ impl World {
                     if let Some(DoorWork { span, door, open }) = self.door_work.take() {
                         let ticket = span.ticket;
                         self.move_door(time, &door, open);
+                        let what = Doing::Door {
+                            door: door.clone(),
+                            open,
+                        };
+                        self.chronicle.add(ticket, time, true, what);
                         self.outputs
                             .push_back(Sensor::DoorSet { ticket, door, open });
                     }
                 }
+                Due::Deed => {
+                    if let Some((Span { ticket, .. }, what)) = self.deed.take() {
+                        let what = Doing::Deed { what };
+                        self.chronicle.add(ticket, time, true, what);
+                        self.outputs.push_back(Sensor::DeedDone { ticket });
+                    }
+                }
             }
         }
+    }
+
+    /// The motion has ended.
+    fn settle(&mut self, now: Time) {
+        let Some(settled) = self.body.settle() else {
+            return;
+        };
+        let what = Doing::Drive {
+            arc: settled.arc,
+            to: settled.to,
+            driven_m: settled.driven_m,
+        };
+        self.chronicle
+            .add(settled.ticket, now, settled.arrived, what);
+        self.outputs.extend(settled.sensor);
+    }
+
+    fn note_speech(&mut self, now: Time, span: &Span, to_the_end: bool) {
+        let what = Doing::Speech {
+            place: self.place(now),
+            spoken_s: now.since(span.begun).secs(),
+        };
+        self.chronicle.add(span.ticket, now, to_the_end, what);
+    }
+
+    /// Stops speaking.
+    fn hush(&mut self, now: Time, span: &Span) {
+        self.note_speech(now, span, false);
+        let ticket = span.ticket;
+        let spoken_s = now.since(span.begun).secs();
+        self.outputs.push_back(Sensor::Hushed { ticket, spoken_s });
     }
 
     fn tell_pose(&mut self, now: Time) {
@@ -178,11 +268,13 @@ impl World {
     }
 
     fn tell_if_halted(&mut self) {
-        if self.halting && self.body.stands() {
-            self.halting = false;
+        if let Some(ticket) = self.halting.take_if(|_| self.body.stands()) {
             self.outputs.push_back(Sensor::Halted {
+                ticket,
                 place: self.body.place().clone(),
                 doors: self.doors.clone(),
+                heard: self.chronicle.head.heard,
+                done: self.tells.then_some(self.chronicle.head.done),
             });
         }
     }
@@ -217,6 +309,9 @@ impl World {
     }
 
     fn command(&mut self, now: Time, command: MotorCommand) {
+        if self.has_heard(&command) {
+            return;
+        }
         match command {
             MotorCommand::Drive {
                 ticket,
@@ -242,8 +337,7 @@ impl World {
             }
             MotorCommand::Hush { ticket } => {
                 if let Some(span) = self.speech.take_if(|span| span.ticket == ticket) {
-                    let spoken_s = now.since(span.begun).secs();
-                    self.outputs.push_back(Sensor::Hushed { ticket, spoken_s });
+                    self.hush(now, &span);
                     self.tell_pose(now);
                 }
             }
@@ -263,10 +357,33 @@ impl World {
                     self.door_work = Some(DoorWork { span, door, open });
                 }
             }
-            MotorCommand::Halt => {
-                self.speech = None;
-                self.door_work = None;
-                self.halting = true;
+            MotorCommand::Deed {
+                ticket,
+                what,
+                duration_s,
+            } => {
+                if self.deed.is_some() {
+                    self.decline(ticket, "the robot is busy with a deed".to_owned());
+                } else {
+                    let span = Span::new(ticket, now, duration_s);
+                    self.underway(ticket, span.end.since(now));
+                    self.deed = Some((span, what));
+                }
+            }
+            MotorCommand::Halt { ticket } => {
+                if let Some(span) = self.speech.take() {
+                    self.hush(now, &span);
+                }
+                if let Some(DoorWork { span, door, .. }) = self.door_work.take() {
+                    let open = self.doors.get(&door) == Some(&true);
+                    let what = Doing::Door { door, open };
+                    self.chronicle.add(span.ticket, now, false, what);
+                }
+                if let Some((span, what)) = self.deed.take() {
+                    let what = Doing::Deed { what };
+                    self.chronicle.add(span.ticket, now, false, what);
+                }
+                self.halting = Some(ticket);
                 self.body.brake(&self.spec, now, Ending::Halted);
                 self.tell_if_halted();
             }
@@ -325,6 +442,7 @@ impl Machine for World {
     type Out = Sensor;
 
     fn handle(&mut self, now: Time, input: Input<MotorCommand>) -> Option<Reply> {
+        self.now = self.now.max(now);
         self.advance(now);
         let reply = match input {
             Input::Local(command) => {

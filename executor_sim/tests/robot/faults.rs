@@ -1,7 +1,7 @@
 //! What may go wrong, and how it looks from above.
 
 use agent_core::model::Time;
-use agent_core::protocol::Answer;
+use agent_core::protocol::{Answer, Durable};
 use executor_sim::{Fault, FaultRates, Faults};
 
 use crate::rig::{Rig, is_success, is_suspended, reason};
@@ -40,11 +40,11 @@ fn a_robot_that_is_too_late_arrives() {
     assert_eq!(rig.suspend(1), Answer::Suspending);
     rig.until(60.0);
     assert!(is_success(rig.only(1).1));
-    assert_eq!(rig.robot.controller().memory(), {
+    assert_eq!(rig.robot.write_down(), {
         let mut undisturbed = Rig::new("n1");
         undisturbed.execute(1, "move n1 n6 arc5");
         undisturbed.until(60.0);
-        undisturbed.robot.controller().memory()
+        undisturbed.robot.write_down()
     });
 }
 

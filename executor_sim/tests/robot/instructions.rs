@@ -2,11 +2,11 @@
 
 use agent_core::model::{Domain, ExecutionModel, Time};
 use agent_core::protocol::{
-    Answer, GoalRequest, Happening, Input, Instruction, Machine, Reply, Report, Urgency,
+    Answer, Durable, GoalRequest, Happening, Input, Instruction, Machine, Reply, Report, Urgency,
 };
 use executor_sim::{Controller, Faults, VocabularyError};
 
-use crate::rig::{Rig, atom, domain_of, floor, id, is_success, is_suspended, reason};
+use crate::rig::{Rig, atom, domain, domain_of, floor, id, is_success, is_suspended, write_rows};
 
 fn words(answer: &Answer) -> &str {
     match answer {
@@ -256,15 +256,16 @@ fn a_robot_whose_controller_is_new_stops_and_waits_to_be_told() {
         rig.until(100.0);
         assert!((rig.odometer_m() - 2.5).abs() < 1e-9);
         if keep_memory {
-            assert_eq!(
-                reason(rig.only(2).1),
-                "the robot's controller was started anew"
-            );
+            assert!(is_suspended(rig.only(2).1));
             rig.check_belief();
             assert_eq!(rig.resume(1), Answer::Accepted);
             rig.until(200.0);
             let (at, ..) = rig.reports.last().expect("an end");
             assert!((at.secs() - 120.0).abs() < 1e-5);
+            assert_eq!(rig.resume(2), Answer::Accepted);
+            rig.until(300.0);
+            assert!(is_success(rig.told(2)[1]));
+            assert!((rig.odometer_m() - 6.0).abs() < 1e-9);
         } else {
             assert!(rig.told(2).is_empty());
             let facts = rig.robot.announcement();
@@ -285,9 +286,15 @@ fn what_is_written_down_can_be_read_again() {
     rig.execute(2, "hail guest");
     rig.until(20.0);
     rig.execute(3, "move n1 n6 arc5");
-    let memory = rig.robot.controller().memory();
-    let text = serde_json::to_string(&memory).expect("a memory is plain data");
-    assert_eq!(memory, serde_json::from_str(&text).expect("as written"));
+    write_rows(&mut rig.journal, rig.robot.write_down());
+    let (domain, model) = domain();
+    let mut again = Controller::new(&domain, &model, floor(), Faults::none()).expect("a sound one");
+    again.recall(&rig.journal).expect("as written");
+    // It has halted, and knows that it was not there for a while.
+    let different: Vec<_> = again.write_down().into_iter().map(|row| row.key).collect();
+    assert_eq!(different, ["m/running", "m/ticket"]);
+    // Nothing is written twice.
+    assert!(again.write_down().is_empty());
 }
 
 #[test]

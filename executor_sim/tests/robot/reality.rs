@@ -36,11 +36,12 @@ fn drive(ticket: u64, arc: &str, to: &str) -> Input<MotorCommand> {
 fn a_command_that_cannot_be_carried_out_is_declined_and_disturbs_nothing() {
     let mut world = world();
     sensed(&mut world, Time::ZERO, drive(1, "arc5", "n6"));
-    for (command, why) in [
-        (drive(2, "arc5", "n1"), "the body is moving"),
+    for (ticket, command, why) in [
+        (2, drive(2, "arc5", "n1"), "the body is moving"),
         (
+            3,
             Input::Local(MotorCommand::SetDoor {
-                ticket: Ticket(2),
+                ticket: Ticket(3),
                 door: "d9".into(),
                 open: true,
                 duration_s: 1.0,
@@ -49,7 +50,7 @@ fn a_command_that_cannot_be_carried_out_is_declined_and_disturbs_nothing() {
         ),
     ] {
         let declined = Sensor::Declined {
-            ticket: Ticket(2),
+            ticket: Ticket(ticket),
             reason: why.to_owned(),
         };
         assert_eq!(sensed(&mut world, secs(1.0), command), [declined]);
@@ -60,7 +61,7 @@ fn a_command_that_cannot_be_carried_out_is_declined_and_disturbs_nothing() {
         [Sensor::Arrived { ticket: Ticket(1), driven_m, .. }] if (driven_m - 6.0).abs() < 1e-9
     ));
     let [Sensor::Declined { reason, .. }] =
-        &sensed(&mut world, secs(61.0), drive(3, "arc7", "n4"))[..]
+        &sensed(&mut world, secs(61.0), drive(4, "arc7", "n4"))[..]
     else {
         unreachable!("n6 is not on arc7");
     };
@@ -88,10 +89,18 @@ fn a_halt_is_said_to_be_one_at_standstill_wherever_that_is() {
     for (at_s, place) in [(7.0, Some(Place::at("n6"))), (3.0, None)] {
         let mut world = world();
         sensed(&mut world, Time::ZERO, drive(1, "arc5", "n6"));
-        let halt = Input::Local(MotorCommand::Halt);
+        let halt = Input::Local(MotorCommand::Halt { ticket: Ticket(2) });
         assert!(sensed(&mut world, secs(at_s), halt).is_empty(), "it rolls");
         let halted = sensed(&mut world, secs(60.0), Input::Wake);
-        let [Sensor::Halted { place: at, doors }] = &halted[..] else {
+        let [
+            Sensor::Halted {
+                ticket: Ticket(2),
+                place: at,
+                doors,
+                ..
+            },
+        ] = &halted[..]
+        else {
             unreachable!("{halted:?}");
         };
         assert!(place.is_none_or(|place| place == *at));

@@ -7,7 +7,7 @@ use agent_core::model::{
     Operator, Parameter, Pattern, Suspension, Symbol, Term, Time,
 };
 use agent_core::protocol::{
-    ActionId, Answer, Event, Input, Instruction, Machine, Output, Reply, Report,
+    ActionId, Answer, Durable, Event, Input, Instruction, Machine, Output, Reply, Report, Row, Rows,
 };
 use executor_sim::{Controller, Faults, Floor, MoverSpec, Passage, Place, SimulatedRobot};
 
@@ -56,14 +56,14 @@ fn pattern(name: &str, args: &[&str], parameters: &[&str]) -> Pattern {
 }
 
 /// Action, parameters, what the robot performs, whether it can be suspended.
-type Row = (
+type Entry = (
     &'static str,
     &'static [&'static str],
     &'static [&'static str],
     bool,
 );
 
-const ACTIONS: [Row; 7] = [
+const ACTIONS: [Entry; 8] = [
     (
         "move",
         &["?from", "?to", "?arc"],
@@ -81,9 +81,10 @@ const ACTIONS: [Row; 7] = [
     ("hail", &["?p"], &["speak", "2"], false),
     ("shut", &["?d"], &["set-door", "?d", "closed"], false),
     ("unlock", &["?d"], &["set-door", "?d", "open"], false),
+    ("hand-over", &["?x"], &["deed", "hand-over", "?x"], false),
 ];
 
-pub fn domain_of(rows: &[Row]) -> (Domain, ExecutionModel) {
+pub fn domain_of(rows: &[Entry]) -> (Domain, ExecutionModel) {
     let (mut domain, mut model) = (Domain::default(), ExecutionModel::default());
     for (name, parameters, perform, suspendable) in rows {
         let parameter = |name: &&str| Parameter {
@@ -102,6 +103,7 @@ pub fn domain_of(rows: &[Row]) -> (Domain, ExecutionModel) {
         );
         let about = ActionModel {
             duration_s: Some(Number::Constant(5.0)),
+            repeatable: perform[0] != "deed",
             perform: Some(pattern(perform[0], &perform[1..], parameters)),
             suspension: suspendable.then(|| Suspension {
                 effect: Effect::default(),
@@ -138,9 +140,20 @@ pub fn atom(text: &str) -> Atom {
     Atom::new(name, words)
 }
 
+/// What a journal makes of that.
+pub fn write_rows(journal: &mut Rows, rows: Vec<Row>) {
+    for Row { key, value } in rows {
+        match value {
+            Some(value) => drop(journal.insert(key, value)),
+            None => drop(journal.remove(&key)),
+        }
+    }
+}
+
 /// The superior `child`, and the robot that it instructs.
 pub struct Rig {
     pub robot: SimulatedRobot,
+    pub journal: Rows,
     pub now: Time,
     /// When, of which action, what.
     pub reports: Vec<(Time, ActionId, Report)>,
@@ -174,6 +187,7 @@ impl Rig {
         belief.apply_all(&robot.announcement());
         Self {
             robot,
+            journal: Rows::new(),
             now: Time::ZERO,
             reports: Vec::new(),
             elsewhere: Vec::new(),
@@ -190,6 +204,7 @@ impl Rig {
                 Output::Report { to, id, report } if to == "child" => {
                     if let Report::Success { facts }
                     | Report::Failure { facts, .. }
+                    | Report::Unknown { facts, .. }
                     | Report::Suspended { facts } = &report
                     {
                         self.belief.apply_all(facts);
@@ -279,13 +294,12 @@ impl Rig {
     /// A new process controls the robot, with nothing but what the last one wrote down.
     pub fn restart(&mut self, keep_memory: bool) {
         let (domain, model) = domain();
-        let memory = if keep_memory {
-            self.robot.controller().memory()
-        } else {
-            Default::default()
-        };
-        let fresh = Controller::remembering(&domain, &model, floor(), Faults::none(), memory)
-            .expect("a sound controller");
+        let mut fresh =
+            Controller::new(&domain, &model, floor(), Faults::none()).expect("a sound controller");
+        if keep_memory {
+            write_rows(&mut self.journal, self.robot.write_down());
+            fresh.recall(&self.journal).expect("as written");
+        }
         self.robot.restart_controller(self.now, fresh);
         self.drain();
     }
