@@ -1,5 +1,8 @@
 //! The world's clock: one time for all processes of a robot, simulated or not.
 
+use std::fs::{self, File};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
@@ -15,6 +18,12 @@ use crate::wire::{self, VERSION, WireError};
 
 /// Between two attempts to hear from the world.
 const RETRY: Duration = Duration::from_millis(100);
+
+/// Roles that are told to end with their world have ended after this long.
+const LAST_TO_END: Duration = Duration::from_secs(6);
+
+/// No note is longer; what is, is not ours.
+const MAX_NOTE_BYTES: u64 = 4096;
 
 /// An attempt.
 const QUERY_TIMEOUT: Duration = Duration::from_secs(1);
@@ -39,9 +48,36 @@ struct ClockMessage {
     speed: f64,
 }
 
+/// What a world notes of its clock, for its next start.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ClockNote {
+    v: u32,
+    origin_unix_us: u64,
+    speed: f64,
+    /// When it has ended in order; `None` while it runs, or if it was killed.
+    stopped_unix_us: Option<u64>,
+}
+
 /// Why there is no time.
 #[derive(Debug, thiserror::Error)]
 pub enum ClockError {
+    /// The file system.
+    #[error("cannot keep the world's time in {}: {why}", path.display())]
+    Io {
+        /// Where.
+        path: PathBuf,
+        /// In the system's words.
+        why: io::Error,
+    },
+    /// Not what a world has noted.
+    #[error("{} does not say what time it is: {why}; without it, and without the journals beside it, time begins anew", path.display())]
+    Note {
+        /// Where.
+        path: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
     /// Nothing runs at this or any speed.
     #[error("a world cannot run at speed {0}: it takes a number above zero")]
     Speed(f64),
@@ -69,6 +105,68 @@ impl Clock {
     /// A world that begins now.
     pub fn start(speed: f64) -> Result<Self, ClockError> {
         Self::new(unix_us(), speed)
+    }
+
+    /// The clock that was noted in `file`, or one that begins now.
+    ///
+    /// A world that was killed has missed nothing: time went on for all others. One that has ended in
+    /// order has stopped it for all, at the latest when the last of them has ended.
+    ///
+    /// # Errors
+    /// If the file makes no sense or cannot be written.
+    pub fn continued(file: &Path, speed: f64) -> Result<Self, ClockError> {
+        let now_us = unix_us();
+        let origin_unix_us = match read_note(file)? {
+            None => now_us,
+            Some(note) => {
+                let longest = note.stopped_unix_us.unwrap_or(now_us);
+                let until = now_us.min(longest.saturating_add(LAST_TO_END.as_micros() as u64));
+                let paused_us = now_us - until;
+                let passed_us = until.saturating_sub(note.origin_unix_us);
+                if note.speed.to_bits() == speed.to_bits() {
+                    note.origin_unix_us.saturating_add(paused_us)
+                } else {
+                    // The same time, which passes otherwise from now on.
+                    let passed_us = passed_us as f64 * note.speed / speed;
+                    now_us.saturating_sub(passed_us as u64)
+                }
+            }
+        };
+        let clock = Self::new(origin_unix_us, speed)?;
+        clock.note(file, None)?;
+        Ok(clock)
+    }
+
+    /// Notes in `file` that the world ends now.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn stop(&self, file: &Path) -> Result<(), ClockError> {
+        self.note(file, Some(unix_us()))
+    }
+
+    fn note(&self, file: &Path, stopped_unix_us: Option<u64>) -> Result<(), ClockError> {
+        let note = wire::write(&ClockNote {
+            v: VERSION,
+            origin_unix_us: self.origin_unix_us,
+            speed: self.speed,
+            stopped_unix_us,
+        })?;
+        // As a whole or not at all.
+        let unfinished = file.with_extension("new");
+        let written = (|| {
+            if let Some(directory) = file.parent() {
+                fs::create_dir_all(directory)?;
+            }
+            let mut new = File::create(&unfinished)?;
+            new.write_all(note.as_bytes())?;
+            new.sync_all()?;
+            fs::rename(&unfinished, file)
+        })();
+        written.map_err(|why| ClockError::Io {
+            path: file.to_owned(),
+            why,
+        })
     }
 
     fn new(origin_unix_us: u64, speed: f64) -> Result<Self, ClockError> {
@@ -171,6 +269,29 @@ pub fn epoch_now() -> u64 {
     unix_us() / 1000
 }
 
+/// What a world has noted of its clock; `None` if there is no file.
+fn read_note(file: &Path) -> Result<Option<ClockNote>, ClockError> {
+    let mut text = Vec::new();
+    let read = File::open(file).and_then(|open| open.take(MAX_NOTE_BYTES).read_to_end(&mut text));
+    match read {
+        Ok(_) => {}
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(why) => {
+            let path = file.to_owned();
+            return Err(ClockError::Io { path, why });
+        }
+    }
+    let unread = |why: String| ClockError::Note {
+        path: file.to_owned(),
+        why,
+    };
+    let note: ClockNote = wire::read("clock", &text).map_err(|error| unread(error.to_string()))?;
+    if !(note.speed.is_finite() && note.speed > 0.0) {
+        return Err(unread(format!("a speed of {}", note.speed)));
+    }
+    Ok(Some(note))
+}
+
 /// The date, in microseconds since 1970.
 fn unix_us() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
@@ -204,6 +325,66 @@ mod tests {
         assert!(apart_s < 0.5, "{apart_s} s apart");
         for speed in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(Clock::start(speed).is_err());
+        }
+    }
+
+    fn noted(file: &Path, change: impl FnOnce(&mut ClockNote)) {
+        let mut note = read_note(file).unwrap().unwrap();
+        change(&mut note);
+        fs::write(file, wire::write(&note).unwrap()).unwrap();
+    }
+
+    const HOUR_US: u64 = 3_600_000_000;
+
+    #[test]
+    fn time_goes_on_for_a_world_that_was_killed() {
+        let directory = tempfile::tempdir().unwrap();
+        let file = directory.path().join("robot/clock.json");
+        let clock = Clock::continued(&file, 2.0).unwrap();
+        assert!(clock.now() < Time::from_secs(60.0));
+        noted(&file, |note| note.origin_unix_us -= HOUR_US);
+        let clock = Clock::continued(&file, 2.0).unwrap();
+        assert!(clock.now() >= Time::from_secs(7200.0));
+        // To the microsecond: others go on with the date that they were told.
+        let origin = clock.origin_unix_us;
+        let again = Clock::continued(&file, 2.0).unwrap();
+        assert_eq!(again.origin_unix_us, origin);
+        let faster = Clock::continued(&file, 20.0).unwrap();
+        assert!((faster.now().secs() - again.now().secs()).abs() < 60.0);
+    }
+
+    #[test]
+    fn time_stands_still_while_nothing_runs() {
+        let directory = tempfile::tempdir().unwrap();
+        let file = directory.path().join("clock.json");
+        let clock = Clock::continued(&file, 1.0).unwrap();
+        clock.stop(&file).unwrap();
+        noted(&file, |note| {
+            note.origin_unix_us -= 2 * HOUR_US;
+            note.stopped_unix_us = Some(note.origin_unix_us + HOUR_US);
+        });
+        let clock = Clock::continued(&file, 1.0).unwrap();
+        let (now_s, stopped_s) = (clock.now().secs(), 3600.0);
+        assert!(
+            (stopped_s..stopped_s + 60.0).contains(&now_s),
+            "{now_s} s after the beginning"
+        );
+    }
+
+    #[test]
+    fn what_is_no_note_is_refused_and_left_untouched() {
+        let directory = tempfile::tempdir().unwrap();
+        let file = directory.path().join("clock.json");
+        for text in [
+            "",
+            "{}",
+            "\u{0}",
+            r#"{"v":1,"origin_unix_us":1,"speed":0,"stopped_unix_us":null}"#,
+        ] {
+            fs::write(&file, text).unwrap();
+            let error = Clock::continued(&file, 1.0).unwrap_err();
+            assert!(matches!(error, ClockError::Note { .. }), "{error}");
+            assert_eq!(fs::read_to_string(&file).unwrap(), text);
         }
     }
 }
