@@ -38,6 +38,14 @@ pub enum Arrival<L> {
         /// Which report.
         seq: u64,
     },
+    /// A superior or an executor has appeared, with a memory that begins in that epoch. Without
+    /// this, one that has lost its memory and has nothing to say would not be noticed.
+    Appeared {
+        /// Who.
+        name: Symbol,
+        /// Its line.
+        line: u64,
+    },
     /// What carries no number: goals, commands, observations, neighbours, time.
     Input(Input<L>),
 }

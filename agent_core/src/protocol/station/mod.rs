@@ -251,6 +251,10 @@ where
                 self.mailboxes.report_delivered(&by, seq, self.state);
                 self.know(now, &by, line);
             }
+            Arrival::Appeared { name, line } => {
+                self.know(now, &name, line);
+                self.tell(now, Input::Neighbour { name, there: true });
+            }
             Arrival::Input(input) => {
                 let reply = self.tell(now, input);
                 match reply {

@@ -374,6 +374,19 @@ fn a_neighbour_without_its_memory_is_noticed_once_from_above_and_from_below() {
         above.heard(),
         ["answer 1", "answer 2", "reborn below", "answer 3"]
     );
+    for line in [7, 9] {
+        let name = "below".into();
+        above.handle(Arrival::Appeared { name, line }, None);
+    }
+    assert_eq!(
+        above.heard().last().map(String::as_str),
+        Some("reborn below")
+    );
+    assert_eq!(
+        above.heard().len(),
+        5,
+        "noticed once more, by its appearing"
+    );
 }
 
 #[test]
