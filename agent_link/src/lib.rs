@@ -45,6 +45,8 @@
 //! - Events, verdicts on plain puts and snapshots are for people, and may be lost on the way.
 //! - What users type is limited in size and depth, and what cannot be read is refused with a
 //!   reason. It never reaches a machine.
+//! - What users send waits in a lane of its own, behind what agents say, and is looked at no more than
+//!   so often; emergencies have a rate for each sender and one for all. Whoever asks too much is told.
 //! - Nothing but a router listens, and a router only on this machine, unless told otherwise.
 //!
 //! Nothing here is durable yet: what was accepted is forgotten when the process ends.
@@ -60,6 +62,7 @@ mod inspect;
 mod inspect_agent;
 mod inspect_alternatives;
 mod keys;
+mod limit_options;
 mod link;
 mod mailbox;
 pub mod options;

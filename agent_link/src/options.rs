@@ -9,6 +9,7 @@ use clap::Args;
 use zenoh::Session;
 
 use crate::keys::{Keys, NameError};
+pub use crate::limit_options::{LimitOptions, RateOption};
 use crate::process::{interrupted, stdin_ended};
 use crate::session::{self, Role, SessionError};
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use agent_link::options::{DEFAULT_ROBOT, PlannerOptions};
+use agent_link::options::{DEFAULT_ROBOT, LimitOptions, PlannerOptions};
 use clap::{Args, Parser, Subcommand};
 
 /// Robots that can be interrupted: they stop in the middle of an action, do what is more urgent,
@@ -179,6 +179,8 @@ pub(crate) struct UpArgs {
     /// Kill a role that has not answered for so many seconds, and start it again.
     #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = at_least_a_second)]
     pub(crate) hang_limit: Duration,
+    #[command(flatten)]
+    pub(crate) limits: LimitOptions,
     /// Have some actions fail, stop late, refuse to stop or be slow: which ones, this seed decides.
     #[arg(long, value_name = "SEED")]
     pub(crate) faults: Option<u64>,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use agent_core::agent::Agent;
 use agent_core::model::Symbol;
-use agent_link::options::{LinkOptions, PlaceOptions, PlannerOptions};
+use agent_link::options::{LimitOptions, LinkOptions, PlaceOptions, PlannerOptions};
 use agent_link::{RoleError, Wiring, drive_agent_in_world};
 use clap::Args;
 use maps::{NotInOrder, Place};
@@ -20,6 +20,8 @@ pub struct ParentArgs {
     place: PlaceOptions,
     #[command(flatten)]
     planner: PlannerOptions,
+    #[command(flatten)]
+    limits: LimitOptions,
     /// The child agent that does what this one plans.
     #[arg(long, value_name = "NAME", default_value = "child")]
     child: String,
@@ -50,7 +52,7 @@ pub async fn run(args: ParentArgs) -> Result<(), ProgramError> {
     let place = Place::open(args.place.place.as_deref())?;
     let keys = args.link.keys().map_err(RoleError::from)?;
     let wiring = Wiring::new(&keys, crate::NAME);
-    let configuration = crate::configuration(
+    let mut configuration = crate::configuration(
         place.site(),
         place.area(),
         &args.place.start,
@@ -58,10 +60,12 @@ pub async fn run(args: ParentArgs) -> Result<(), ProgramError> {
         BTreeMap::from_iter(args.wing),
         wiring.epoch,
     )?;
+    configuration.policy.most_waiting = args.limits.most_waiting;
     let executors = configuration.executors.all();
     let wiring = Wiring {
         executors: executors.iter().map(ToString::to_string).collect(),
         takes_goals: true,
+        limits: args.limits.limits(),
         takes_facts: true,
         ..wiring
     };

@@ -5,14 +5,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use agent_core::language::{nearest, parse_fact_change};
 use agent_core::model::FactChange;
 use agent_core::protocol::Command;
-use agent_link::{Client, View};
+use agent_link::View;
 use executor_sim::program::WORLD;
 use serde_json::{Value, json};
 
 use crate::cli::{CommandArgs, DoorArgs, DoorState, FactArgs};
 use crate::exit::{Exit, Failure};
 use crate::style::{BAD, GOOD};
-use crate::target::{Connection, unanswered};
+use crate::target::{Connection, nobody, unanswered};
 
 /// Suspends, resumes or cancels a goal.
 pub(crate) async fn command(
@@ -43,7 +43,7 @@ pub(crate) async fn fact(args: FactArgs) -> Result<Exit, Failure> {
     let connection = Connection::open(&args.target).await?;
     let told = async {
         let client = &connection.client;
-        somebody_understands(client, &fact).await?;
+        somebody_understands(&connection, &fact).await?;
         client.facts(&fact.to_string()).await.map_err(unanswered)
     }
     .await;
@@ -58,10 +58,15 @@ pub(crate) async fn fact(args: FactArgs) -> Result<Exit, Failure> {
 }
 
 /// Refuses a fact that is in the words of no agent: nobody would take any notice of it.
-async fn somebody_understands(client: &Client, fact: &FactChange) -> Result<(), Failure> {
+async fn somebody_understands(connection: &Connection, fact: &FactChange) -> Result<(), Failure> {
+    let client = &connection.client;
     let (FactChange::Add(atom) | FactChange::Remove(atom) | FactChange::Set(atom, _)) = fact;
     let mut words: BTreeMap<String, BTreeSet<u64>> = BTreeMap::new();
-    for (agent, _) in client.alive().await.map_err(unanswered)? {
+    let alive = client.alive().await.map_err(unanswered)?;
+    if alive.is_empty() {
+        return Err(nobody(&connection.keys));
+    }
+    for (agent, _) in alive {
         let belief = client
             .look(&agent, View::Belief)
             .await

@@ -1,5 +1,6 @@
 //! `intermezzo demo`: a tour with two emergencies.
 
+use agent_link::options::LimitOptions;
 use maps::Place;
 
 use super::up::{Performance, perform};
@@ -30,6 +31,7 @@ pub(crate) async fn run(args: DemoArgs) -> Result<Exit, Failure> {
         world_elsewhere: false,
         hang_limit: crate::robot::HANG_LIMIT,
         security: None,
+        limits: LimitOptions::default(),
     };
     let performance = Performance {
         scenario: Some(scenario),

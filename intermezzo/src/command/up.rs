@@ -48,6 +48,7 @@ pub(crate) async fn run(args: UpArgs) -> Result<Exit, Failure> {
         world_elsewhere: args.no_world,
         hang_limit: args.hang_limit,
         security: args.security,
+        limits: args.limits,
     };
     let performance = Performance {
         scenario,

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::path::PathBuf;
 use std::time::Duration;
 
-use agent_link::options::PlannerOptions;
+use agent_link::options::{LimitOptions, PlannerOptions};
 use agent_link::registry::{Entry, Registry, RegistryError};
 use agent_link::session::{self, Role, SessionError};
 use agent_link::{Clock, Keys, Session};
@@ -62,6 +62,8 @@ pub struct Setup {
     pub hang_limit: Duration,
     /// The folder with settings for everybody, instead of `zenoh_config`.
     pub security: Option<PathBuf>,
+    /// How much users may ask for.
+    pub limits: LimitOptions,
 }
 
 impl Setup {

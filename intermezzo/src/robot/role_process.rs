@@ -116,8 +116,12 @@ impl RoleProcess {
                     command.args(["--faults", &seed.to_string()]);
                 }
             }
-            RoleKind::Child | RoleKind::Parent => {
+            RoleKind::Child => {
                 command.args(setup.planner.to_args());
+            }
+            RoleKind::Parent => {
+                command.args(setup.planner.to_args());
+                command.args(setup.limits.to_args());
             }
         }
         command

@@ -179,3 +179,36 @@ async fn one_user_more_is_let_in_and_may_do_what_the_router_is_told() {
         up.until_goal("hers", "goal_accepted").await;
     }
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn more_than_a_robot_keeps_or_takes_is_rejected_in_words() {
+    let user = User::new().await;
+    let few = ["--most-waiting", "2", "--emergencies-per-second", "0.01"];
+    // Slow enough that nothing ends meanwhile.
+    let slow = ["up", "--json", "--speed", "0.5"];
+    let mut up = user.story(&[slow.as_slice(), &few].concat()).await;
+    // Of these one runs and two wait.
+    for id in ["a", "b", "c"] {
+        user.ok(&["goal", "(go n40)", "--id", id]).await;
+    }
+    let refused = user.run(&["goal", "(go n40)", "--id", "d"]).await;
+    assert_eq!(refused.code, Some(1), "{refused:?}");
+    assert!(refused.err.contains("2 goals wait already"), "{refused:?}");
+    user.ok(&["goal", "(go n4)", "--id", "fire", "--emergency"])
+        .await;
+    let refused = user.run(&["goal", "(go n4)", "--emergency"]).await;
+    assert_eq!(refused.code, Some(1), "{refused:?}");
+    assert!(refused.err.contains("too many emergencies"), "{refused:?}");
+    // Others have a rate of their own.
+    let other = [
+        "goal",
+        "(go n4)",
+        "--id",
+        "ill",
+        "--emergency",
+        "--as",
+        "anna",
+    ];
+    user.ok(&other).await;
+    up.until_goal("ill", "goal_accepted").await;
+}
