@@ -1,7 +1,7 @@
 //! What an agent shows of itself, at whatever level it is.
 
 use agent_core::agent::{Agent, Goal, Intention, ResumedBy, WaitsFor};
-use agent_core::model::{Atom, Domain};
+use agent_core::model::{Atom, Domain, Symbol};
 use agent_core::planner::{Plan, Planner};
 use agent_core::protocol::Urgency;
 use serde_json::{Value, json};
@@ -39,6 +39,9 @@ impl<P: Planner> Inspect for Agent<P> {
             "aside": aside.collect::<Vec<_>>(),
             "stack_depth": self.stack().depth(),
             "counts": self.counts(),
+            // Whether it stands still because the superior of one of its goals is not there.
+            "holds": self.holds(),
+            "absent": self.absent().into_iter().map(Symbol::as_str).collect::<Vec<_>>(),
         })
     }
 

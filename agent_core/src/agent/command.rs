@@ -107,7 +107,7 @@ impl<P: Planner> Agent<P> {
     }
 
     /// Gives up a goal that is not running and has been taken out of wherever it stood.
-    fn drop_goal(&mut self, intention: &Intention, reason: &str) {
+    pub(super) fn drop_goal(&mut self, intention: &Intention, reason: &str) {
         self.clear_all(intention);
         let reason = reason.to_owned();
         let what = Happening::GoalFailed {
@@ -124,6 +124,9 @@ impl<P: Planner> Agent<P> {
 
     /// The work of undoing what is half done, the latest first; `None` if nothing need be.
     fn undoing(&self, intention: &Intention) -> Option<Agenda> {
+        if intention.orphaned {
+            return None;
+        }
         let problem = self.problem_of(Some(intention));
         let tasks = intention
             .records

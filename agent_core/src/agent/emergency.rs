@@ -12,6 +12,8 @@ enum Yield {
     Held,
     /// The user wants it set aside.
     SetAside,
+    /// A superior is gone: nothing is started before it is back.
+    Alone,
     /// This one goes first (Algorithm 3).
     To(GoalId),
 }
@@ -25,7 +27,8 @@ impl<P: Planner> Agent<P> {
         let undoing = running
             .execution()
             .is_some_and(|execution| matches!(execution.step.item, Item::RollBack { .. }));
-        if running.intention.cancelled.is_some() && !undoing && !self.is_undoing() {
+        let undone = running.intention.orphaned || !undoing && !self.is_undoing();
+        if running.intention.cancelled.is_some() && undone {
             return Some(Yield::Cancelled);
         }
         if self.hold.is_some() {
@@ -33,6 +36,9 @@ impl<P: Planner> Agent<P> {
         }
         if running.set_aside {
             return Some(Yield::SetAside);
+        }
+        if self.holds() {
+            return Some(Yield::Alone);
         }
         let urgent = self.waiting.most_urgent()?;
         urgent.outranks(goal).then(|| Yield::To(urgent.id.clone()))
@@ -53,6 +59,8 @@ impl<P: Planner> Agent<P> {
                     self.aside.add(running.intention, WaitsFor::User);
                 }
             }
+            // It stays where it is, and is planned for when the superior is back.
+            Yield::Alone => self.planner.stop(),
             Yield::To(urgent) => {
                 if let Some(running) = self.take_running() {
                     self.push(running.intention, &format!("{urgent} goes first"));
@@ -60,6 +68,11 @@ impl<P: Planner> Agent<P> {
             }
         }
         true
+    }
+
+    /// Whether the running goal has come to rest because a superior is gone.
+    pub(super) fn is_paused(&self) -> bool {
+        matches!(self.reason_to_yield(), Some(Yield::Alone))
     }
 
     /// Step 3d.

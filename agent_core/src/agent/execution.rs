@@ -1,7 +1,7 @@
 //! Algorithm 2: planning and plan execution.
 
 use super::{Agent, Execution, Phase, Running};
-use crate::model::{FactChange, Time};
+use crate::model::{FactChange, Symbol, Time};
 use crate::planner::{self, Item, Planner, Step};
 use crate::protocol::{ActionId, Answer, Happening, Instruction, Output, Report};
 
@@ -100,7 +100,7 @@ impl<P: Planner> Agent<P> {
             }
         };
         self.last_executor = executor.clone();
-        let due = self.due(&step);
+        let due = self.due(&executor, &step);
         if let Some(running) = &mut self.running {
             running.surprised = false;
             running.phase = Phase::Executing(Execution {
@@ -112,8 +112,12 @@ impl<P: Planner> Agent<P> {
         }
     }
 
-    /// When an action that begins now has taken too long.
-    fn due(&self, step: &Step) -> Option<Time> {
+    /// When an action that begins now has taken too long; `None` if it may take any time, as it may
+    /// while its executor is gone.
+    pub(super) fn due(&self, executor: &Symbol, step: &Step) -> Option<Time> {
+        if !self.neighbours.has(executor) {
+            return None;
+        }
         let model = self.configuration.model.actions.get(&step.purpose().name)?;
         let seconds =
             planner::number_of(&self.problem(), model.timeout_s.as_ref()?, step.purpose())?;
@@ -141,7 +145,7 @@ impl<P: Planner> Agent<P> {
                 }
                 self.failed(execution, reason, &facts);
             }
-            Report::Unknown { reason, facts } => self.failed(execution, reason, &facts),
+            Report::Unknown { reason, facts } => self.uncertain(execution, &reason, &facts),
             Report::Suspended { facts } => self.suspended(execution, &facts),
         }
     }
@@ -167,7 +171,7 @@ impl<P: Planner> Agent<P> {
     }
 
     /// Step 7b after a success: deletes the executed action from all plans.
-    fn succeeded(&mut self, execution: Execution, facts: &[FactChange]) {
+    pub(super) fn succeeded(&mut self, execution: Execution, facts: &[FactChange]) {
         let step = execution.step;
         let predicted = planner::effect_of(&self.problem(), step.action());
         let mut changes = self.learn(&predicted);
@@ -205,6 +209,21 @@ impl<P: Planner> Agent<P> {
 
     /// Step 7b after a failure: the action is still to be done, and the facts say why it was not.
     pub(super) fn failed(&mut self, execution: Execution, reason: String, facts: &[FactChange]) {
+        if let Some(running) = &mut self.running {
+            let purpose = execution.step.purpose().clone();
+            let failures = running.intention.failures.entry(purpose).or_default();
+            *failures = failures.saturating_add(1);
+        }
+        self.ended_otherwise(execution, reason, facts);
+    }
+
+    /// The same, if the action is not to blame.
+    pub(super) fn ended_otherwise(
+        &mut self,
+        execution: Execution,
+        reason: String,
+        facts: &[FactChange],
+    ) {
         let step = execution.step;
         let facts = self.known(facts);
         let changes = self.learn(&facts);
@@ -212,10 +231,6 @@ impl<P: Planner> Agent<P> {
             running.phase = Phase::Planning;
             running.surprised = true;
             let intention = &mut running.intention;
-            *intention
-                .failures
-                .entry(step.purpose().clone())
-                .or_default() += 1;
             intention.last_failure = Some(format!("{} failed: {reason}", step.action()));
             intention.around(&step, None, None);
             intention.forget(&execution.id);
@@ -303,10 +318,13 @@ impl<P: Planner> Agent<P> {
         self.running.take()
     }
 
-    fn end(&mut self, running: Running, outcome: Report) {
+    pub(super) fn end(&mut self, running: Running, outcome: Report) {
         let intention = running.intention;
         self.clear_all(&intention);
         self.remember(&intention, outcome.clone());
+        if intention.orphaned {
+            return;
+        }
         if let Some((superior, id)) = intention.goal.superior {
             if self.hold.as_ref() == Some(&(superior.clone(), id.clone())) {
                 self.hold = None;

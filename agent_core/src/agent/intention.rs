@@ -46,6 +46,8 @@ pub struct Intention {
     pub failures: BTreeMap<Action, u32>,
     /// Why the last one did.
     pub last_failure: Option<String>,
+    /// Executions of which the executor has lost the record.
+    pub(super) lost: BTreeSet<ActionId>,
     /// Tasks under which something was done that must not be done again.
     pub(super) done_once: BTreeSet<u64>,
 }
@@ -69,6 +71,7 @@ impl Intention {
             blocked_by: BTreeSet::new(),
             failures: BTreeMap::new(),
             last_failure: None,
+            lost: BTreeSet::new(),
             done_once: BTreeSet::new(),
         }
     }
@@ -160,7 +163,10 @@ impl Intention {
 
     fn set_agendas(&mut self, agendas: Vec<Agenda>) {
         self.agendas.clear();
-        for agenda in agendas {
+        for mut agenda in agendas {
+            if !self.lost.is_empty() {
+                agenda.tasks = self.mended(&agenda.tasks);
+            }
             if !self.agendas.iter().any(|known| known.tasks == agenda.tasks) {
                 self.agendas.push(agenda);
             }
@@ -195,6 +201,41 @@ impl Intention {
         self.plans.retain(|plan| !plan.needs(id));
         self.agendas
             .retain(|agenda| !agenda.tasks.items().any(|item| item.needs(id)));
+    }
+
+    /// The executor has lost the record of an execution: what would resume it begins anew instead,
+    /// wherever that is met from now on, and nothing is left to be undone.
+    pub fn lose(&mut self, id: &ActionId) {
+        self.lost.insert(id.clone());
+        self.records.retain(|record| record.id != *id);
+        self.plans.retain(|plan| !plan.needs(id));
+        let agendas = std::mem::take(&mut self.agendas);
+        self.set_agendas(agendas);
+    }
+
+    /// The list without what needs a record that is lost.
+    fn mended(&self, tasks: &TaskList) -> TaskList {
+        let is_lost = |item: &Item| match item {
+            Item::Task(_) => false,
+            Item::Resume { id, .. } | Item::RollBack { id, .. } => self.lost.contains(id),
+        };
+        let (mut before, mut at) = (Vec::new(), tasks);
+        let (mut rest, mut whole) = (tasks, 0);
+        while let Some((item, frame, after)) = at.first() {
+            before.push((item, frame));
+            if is_lost(item) {
+                (rest, whole) = (after, before.len());
+            }
+            at = after;
+        }
+        let before = before.into_iter().take(whole).rev();
+        before.fold(rest.clone(), |rest, (item, frame)| match item {
+            item if !is_lost(item) => rest.prepend(item.clone(), frame.cloned()),
+            Item::Resume { original, .. } => {
+                rest.prepend(Item::Task(original.clone()), frame.cloned())
+            }
+            Item::Task(_) | Item::RollBack { .. } => rest,
+        })
     }
 
     /// The running action goes on for another goal: what is kept here for resuming it becomes

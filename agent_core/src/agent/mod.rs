@@ -17,12 +17,14 @@ mod instruct;
 mod intention;
 mod memory;
 mod monitor;
+mod neighbour;
 mod planning;
 mod stack;
 mod subplan;
 mod suspension;
 #[cfg(test)]
 mod tests;
+mod uncertain;
 mod waiting;
 
 pub use alternatives::{Against, Alternative, Alternatives, Choice, GoalPlace};
@@ -42,6 +44,7 @@ use crate::model::{Belief, Domain, FactChange, Map, Symbol, Task, Time};
 use crate::planner::{Planner, Step};
 use crate::protocol::{ActionId, GoalId, Happening, Input, Machine, Output, Reply};
 use memory::Memory;
+use neighbour::Neighbours;
 
 /// How many goals one input may carry to an end before others are listened to.
 const ROUNDS_PER_INPUT: usize = 8;
@@ -79,6 +82,9 @@ pub struct Agent<P> {
     outputs: VecDeque<Output<Infallible>>,
     /// There may be more to do than waiting.
     unsettled: bool,
+    neighbours: Neighbours,
+    /// It has been restarted, and nothing has come in since.
+    restarted: bool,
     memory: Memory,
 }
 
@@ -148,6 +154,8 @@ impl<P: Planner> Agent<P> {
             now: Time::ZERO,
             outputs: VecDeque::new(),
             unsettled: false,
+            neighbours: Neighbours::default(),
+            restarted: false,
         };
         let problem = agent.problem();
         agent.told = crate::planner::project(&problem);
@@ -215,6 +223,9 @@ impl<P: Planner> Agent<P> {
                 }
                 Phase::Planning => {
                     if self.yields_now() {
+                        if self.is_paused() {
+                            return;
+                        }
                         continue;
                     }
                     if !self.planner.is_thinking() {
@@ -269,6 +280,9 @@ impl<P: Planner> Machine for Agent<P> {
     fn handle(&mut self, now: Time, input: Input<Infallible>) -> Option<Reply> {
         self.now = self.now.max(now);
         self.forget_ended();
+        if std::mem::take(&mut self.restarted) {
+            self.time_action();
+        }
         let reply = match input {
             Input::Goal(request) => Some(Reply::Goal(self.accept(request))),
             Input::Command(command) => Some(Reply::Command(self.command(&command))),
@@ -287,7 +301,15 @@ impl<P: Planner> Machine for Agent<P> {
                 self.observed(&facts);
                 None
             }
-            Input::Neighbour { .. } | Input::Reborn { .. } | Input::Wake => None,
+            Input::Neighbour { name, there } => {
+                self.neighbour(name, there);
+                None
+            }
+            Input::Reborn { name } => {
+                self.reborn(&name);
+                None
+            }
+            Input::Wake => None,
             Input::Local(never) => match never {},
         };
         self.watch_the_clock();

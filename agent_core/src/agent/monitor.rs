@@ -129,11 +129,9 @@ impl<P: Planner> Agent<P> {
         {
             let purpose = execution.step.purpose().clone();
             // Counts as a failure, so that it is not tried for ever.
-            *running
-                .intention
-                .failures
-                .entry(purpose.clone())
-                .or_default() += 1;
+            let failures = &mut running.intention.failures;
+            let failures = failures.entry(purpose.clone()).or_default();
+            *failures = failures.saturating_add(1);
             running.broken = Some(format!("{purpose} takes longer than it may"));
         }
     }

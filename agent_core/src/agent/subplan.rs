@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{Agent, Goal, Intention, ResumedBy};
 use crate::model::{FactChange, Map, Symbol, Task};
 use crate::planner::Planner;
-use crate::protocol::{ActionId, Answer, Happening, Instruction, Output, Report, Urgency};
+use crate::protocol::{ActionId, Answer, GoalId, Happening, Instruction, Output, Report, Urgency};
 
 impl<P: Planner> Agent<P> {
     /// Step 1, and what else a superior may instruct.
@@ -104,11 +104,9 @@ impl<P: Planner> Agent<P> {
             .stack
             .place_of(from, &id)
             .is_some_and(|place| self.stack.entries()[place].resumed_by == ResumedBy::Superior);
-        if held {
-            // Asked again; the report may have been lost.
-            let facts = self.tell_superiors();
-            self.report(from, &id, Report::Suspended { facts });
-        } else {
+        // If it is held, it was reported that it is, once: a second report might be taken for one
+        // of a later suspension.
+        if !held {
             self.hold = Some((from.clone(), id));
             // Nothing runs while the goal waits to be begun or planned for.
             self.hold_if_idle();
@@ -196,7 +194,7 @@ impl<P: Planner> Agent<P> {
             return Answer::Accepted;
         };
         let goal = self.stack.entries()[place].intention.goal.id.clone();
-        if let Some(intention) = self.stack.remove(&goal) {
+        if let Some(intention) = self.take_from_stack(&goal) {
             self.clear_all(&intention);
             let action = intention.goal.tasks.first();
             if let Some(action) = action.cloned() {
@@ -210,6 +208,22 @@ impl<P: Planner> Agent<P> {
             };
             self.remember(&intention, outcome);
         }
+        if self
+            .hold
+            .as_ref()
+            .is_some_and(|(who, what)| who == from && what == id)
+        {
+            self.hold = None;
+        }
+        Answer::Accepted
+    }
+
+    /// Takes a superior's goal out of the stack. What was held only because it stood above is the
+    /// agent's own again.
+    pub(super) fn take_from_stack(&mut self, goal: &GoalId) -> Option<Intention> {
+        let entries = self.stack.entries();
+        let place = entries.iter().position(|e| e.intention.goal.id == *goal)?;
+        let intention = self.stack.remove(goal);
         let own = self.stack.entries().iter().skip(place);
         let own_above = own
             .take_while(|entry| entry.intention.goal.superior.is_none())
@@ -217,7 +231,7 @@ impl<P: Planner> Agent<P> {
         if place + own_above == self.stack.depth() {
             self.stack.set_resumed_by(place, ResumedBy::Agent);
         }
-        Answer::Accepted
+        intention
     }
 
     fn report(&mut self, to: &Symbol, id: &ActionId, report: Report) {

@@ -133,7 +133,8 @@ fn a_repeated_instruction_is_applied_once() {
     assert_eq!(child.told(), ["suspend #1"]);
     child.suspended(1, &ON_ARC5);
     assert_eq!(child.instruct(suspend(1)), Answer::Suspending);
-    assert_eq!(child.reported(), ["#1 suspended", "#1 suspended"]);
+    // A second report could be taken for one of a later suspension.
+    assert_eq!(child.reported(), ["#1 suspended"]);
     child.instruct(resume(1));
     assert_eq!(child.instruct(resume(1)), Answer::Accepted);
     assert_eq!(child.told(), ["resume #1"]);

@@ -92,6 +92,13 @@ impl<P: Planner> Agent<P> {
             let intention = &entry.intention;
             self.planner.keep(&intention.goal.id, &intention.agendas);
         }
+        let goals = self.all_intentions();
+        let superiors = goals.filter_map(|i| i.goal.superior.as_ref());
+        let superiors: BTreeSet<Symbol> = superiors.map(|(name, _)| name.clone()).collect();
+        for superior in superiors {
+            self.neighbours.expect(superior);
+        }
+        self.restarted = true;
         self.unsettled = true;
     }
 
@@ -231,6 +238,7 @@ impl<P: Planner> Agent<P> {
             blocked_by: row.blocked_by.into_iter().collect(),
             failures: row.failures.into_iter().collect(),
             last_failure: row.last_failure,
+            lost: row.lost.into_iter().collect(),
             done_once,
         };
         let running = row.running.map(|row| {

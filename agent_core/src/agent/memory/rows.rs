@@ -87,6 +87,7 @@ pub(super) struct GoalRow {
     pub blocked_by: Vec<Fact>,
     pub failures: Vec<(Action, u32)>,
     pub last_failure: Option<String>,
+    pub lost: Vec<ActionId>,
     pub done_once: Vec<u64>,
     pub network: NetworkRow,
     pub agendas: Vec<AgendaRow>,

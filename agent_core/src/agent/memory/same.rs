@@ -95,6 +95,7 @@ fn same_intention(a: &Intention, b: &Intention) -> bool {
         blocked_by,
         failures,
         last_failure,
+        lost,
         done_once,
     } = a;
     same_goal(goal, &b.goal)
@@ -108,6 +109,7 @@ fn same_intention(a: &Intention, b: &Intention) -> bool {
         && *blocked_by == b.blocked_by
         && *failures == b.failures
         && *last_failure == b.last_failure
+        && *lost == b.lost
         && *done_once == b.done_once
 }
 

@@ -114,6 +114,11 @@ fn live<P: Planner + Clone>(
             epoch += 1;
             let again = recalled(epoch, planner(), &rows);
             agent = again.unwrap_or_else(|fault| panic!("RECALL_SEED={seed}: {fault}"));
+            if dice.chance(80) {
+                for input in history.neighbours() {
+                    agent.handle(history.now, input);
+                }
+            }
         }
     }
 }
@@ -184,6 +189,9 @@ fn an_agent_that_recalls_goes_on_as_the_other_does() {
             let from = agent.next_action;
             let again = recalled(epoch + 1, naive(), rows);
             let mut again = again.unwrap_or_else(|fault| panic!("RECALL_SEED={seed}: {fault}"));
+            // What happens only once at a start.
+            again.neighbours = agent.neighbours.clone();
+            agent.restarted = true;
             for number in 0..15 {
                 let input = history.next();
                 let same = renamed(input.clone(), epoch + 1, from);

@@ -104,6 +104,16 @@ impl History {
         }
     }
 
+    /// What somebody who has just begun is told of the others.
+    pub fn neighbours(&self) -> Vec<Input<Infallible>> {
+        let neighbours = NEIGHBOURS.map(|name| {
+            let name = Symbol::from(name);
+            let there = !self.gone.contains(&name);
+            Input::Neighbour { name, there }
+        });
+        neighbours.into()
+    }
+
     /// What happens next.
     pub fn next(&mut self) -> Input<Infallible> {
         let passes = [0, 0, 1, 1, 10, 100][self.dice.roll(6)];

@@ -1,4 +1,12 @@
 //! Agents in a small world, without anything else.
 
+mod ended;
 pub(in crate::agent) mod history;
+mod hold;
+mod reborn;
+mod restart;
+mod rig;
 pub(in crate::agent) mod toy;
+mod uncertain;
+
+use rig::{Rig, boss};
