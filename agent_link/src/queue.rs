@@ -21,6 +21,9 @@ const FROM_USERS: usize = 256;
 /// So much of what users ask for is looked at in a second.
 const USERS_PER_S: f64 = 500.0;
 
+/// What falls due in this time may come at once: so long a machine may be kept from thinking.
+const BURST: Duration = Duration::from_millis(200);
+
 /// Where arrivals are put.
 #[derive(Clone, Debug)]
 pub(crate) struct Lane(Sender<Arrival>);
@@ -42,7 +45,7 @@ pub(crate) fn lanes() -> (Lane, Lane, Arrivals) {
         agents,
         users,
         meter: Meter::default(),
-        rate: Rate::per_second(USERS_PER_S),
+        rate: Rate::per_second(USERS_PER_S).map(|rate| rate.at_once(BURST)),
         opened: Instant::now(),
     };
     (Lane(from_agents), Lane(from_users), arrivals)

@@ -42,6 +42,14 @@ impl Rate {
         })
     }
 
+    /// The same, with what falls due in that time at once.
+    pub(crate) fn at_once(self, burst: Duration) -> Self {
+        Self {
+            ahead: self.interval.max(burst),
+            ..self
+        }
+    }
+
     /// How many in a second.
     pub fn number(self) -> f64 {
         1.0 / self.interval.as_secs_f64()

@@ -364,7 +364,7 @@ pub(crate) struct PlanArgs {
 #[command(after_help = "\
 In DIR there is then, each readable by you alone:
   ca.pem, ca-key.pem            an authority; its key makes more certificates, and nothing else needs it
-  router, parent, child, executor, world, operator, viewer
+  router, supervisor, parent, child, executor, world, operator, viewer
                                 of each a certificate, its private key and a zenoh configuration
 
 Examples:
@@ -395,7 +395,7 @@ pub(crate) struct CertsArgs {
 #[command(after_help = "\
 In DIR there is then, each readable by you alone:
   router.json5, credentials.txt       the router's configuration, and the names and passwords it knows
-  parent, child, executor, world, operator, viewer (.json5)
+  supervisor, parent, child, executor, world, operator, viewer (.json5)
                                       of each a zenoh configuration with its name and password
 
 Passwords are not sent, but what is said can be read on the way and changed: beyond one machine use

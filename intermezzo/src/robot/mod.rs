@@ -201,7 +201,7 @@ impl Robot {
         };
         let name = match role {
             Role::Router { .. } => security::ROUTER,
-            Role::Client { .. } => security::OPERATOR,
+            Role::Client { .. } => security::SUPERVISOR,
         };
         let session = session::open(&role, setup.zenoh_config_of(name).as_deref())
             .await

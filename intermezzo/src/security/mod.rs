@@ -11,12 +11,14 @@ use std::path::{Path, PathBuf};
 pub(crate) const ROUTER: &str = "router";
 pub(crate) const OPERATOR: &str = "operator";
 pub(crate) const VIEWER: &str = "viewer";
+/// `intermezzo up` on a router elsewhere.
+pub(crate) const SUPERVISOR: &str = "supervisor";
 
 /// The ready configurations of one way to prove who one is.
 pub(crate) struct Ready {
     pub(crate) router: &'static str,
     /// Of each client, by name.
-    pub(crate) clients: [(&'static str, &'static str); 6],
+    pub(crate) clients: [(&'static str, &'static str); 7],
 }
 
 macro_rules! ready {
@@ -31,6 +33,10 @@ macro_rules! ready {
                 (
                     VIEWER,
                     include_str!(concat!("../../../security/", $way, "/viewer.json5")),
+                ),
+                (
+                    SUPERVISOR,
+                    include_str!(concat!("../../../security/", $way, "/supervisor.json5")),
                 ),
                 (
                     parent_agent::NAME,

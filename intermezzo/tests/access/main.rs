@@ -16,23 +16,37 @@ use zenoh::query::{ConsolidationMode, QueryTarget};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
-const EVERYBODY: [&str; 6] = ["operator", "viewer", "parent", "child", "executor", "world"];
+const EVERYBODY: [&str; 7] = [
+    "operator",
+    "viewer",
+    "supervisor",
+    "parent",
+    "child",
+    "executor",
+    "world",
+];
+
+/// Who may ask a robot for something.
+const ASK: &[&str] = &["operator", "supervisor"];
+
+/// Who may look at it.
+const LOOK: &[&str] = &["operator", "viewer", "supervisor"];
 
 /// What may be asked: the key, who may ask, and whom that reaches.
-const QUESTIONS: [(&str, &[&str], &[&str]); 26] = [
-    ("goal/normal", &["operator"], &["parent"]),
+const QUESTIONS: [(&str, &[&str], &[&str]); 28] = [
+    ("goal/normal", ASK, &["parent"]),
     ("goal/normal/operator", &["operator"], &["parent"]),
     ("goal/normal/viewer", &[], &[]),
-    ("goal/emergency", &["operator"], &["parent"]),
+    ("goal/emergency", ASK, &["parent"]),
     ("goal/emergency/operator", &["operator"], &["parent"]),
     ("goal/emergency/child", &[], &[]),
-    ("goal/command", &["operator"], &["parent"]),
+    ("goal/command", ASK, &["parent"]),
     ("goal/answers", &[], &[]),
-    ("facts", &["operator"], &["parent", "child", "world"]),
-    ("parent/status", &["operator", "viewer"], &["parent"]),
-    ("child/belief", &["operator", "viewer"], &["child"]),
-    ("executor/stack", &["operator", "viewer"], &["executor"]),
-    ("world/plans", &["operator", "viewer"], &["world"]),
+    ("facts", ASK, &["parent", "child", "world"]),
+    ("parent/status", LOOK, &["parent"]),
+    ("child/belief", LOOK, &["child"]),
+    ("executor/stack", LOOK, &["executor"]),
+    ("world/plans", LOOK, &["world"]),
     ("parent/instruction", &[], &[]),
     ("parent/report", &["child"], &["parent"]),
     ("parent/facts", &[], &[]),
@@ -46,28 +60,37 @@ const QUESTIONS: [(&str, &[&str], &[&str]); 26] = [
     ("world/command", &["executor"], &["world"]),
     ("world/instruction", &[], &[]),
     (
+        "supervisor/status",
+        &["operator", "viewer"],
+        &["supervisor"],
+    ),
+    ("supervisor/instruction", &[], &[]),
+    (
         "clock",
-        &["operator", "viewer", "parent", "child", "executor"],
+        &[
+            "operator",
+            "viewer",
+            "supervisor",
+            "parent",
+            "child",
+            "executor",
+        ],
         &["world"],
     ),
 ];
 
 /// The same for what is put.
 const PUTS: [(&str, &[&str], &[&str]); 21] = [
-    ("goal/normal", &["operator"], &["parent"]),
+    ("goal/normal", ASK, &["parent"]),
     ("goal/normal/operator", &["operator"], &["parent"]),
     ("goal/normal/viewer", &[], &[]),
-    ("goal/emergency", &["operator"], &["parent"]),
+    ("goal/emergency", ASK, &["parent"]),
     ("goal/emergency/operator", &["operator"], &["parent"]),
     ("goal/emergency/child", &[], &[]),
     ("goal/command", &[], &[]),
-    ("goal/answers", &["parent"], &["operator", "viewer"]),
-    ("facts", &["operator"], &["parent", "child", "world"]),
-    (
-        "event",
-        &["parent", "child", "executor", "world"],
-        &["operator", "viewer"],
-    ),
+    ("goal/answers", &["parent"], LOOK),
+    ("facts", ASK, &["parent", "child", "world"]),
+    ("event", &["parent", "child", "executor", "world"], LOOK),
     ("parent/instruction", &[], &[]),
     ("parent/report", &[], &[]),
     ("child/instruction", &[], &[]),
@@ -77,7 +100,7 @@ const PUTS: [(&str, &[&str], &[&str]); 21] = [
     ("executor/facts", &["executor"], &["child"]),
     ("executor/sensor", &[], &[]),
     ("world/command", &[], &[]),
-    ("world/pose", &["world"], &["operator", "viewer"]),
+    ("world/pose", &["world"], LOOK),
     ("clock", &[], &[]),
 ];
 
@@ -212,6 +235,40 @@ async fn with_certificates_only_what_is_permitted_arrives() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 4)]
 async fn with_passwords_only_what_is_permitted_arrives() {
     everybody_tries_everything("passwords").await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 4)]
+async fn what_is_far_too_large_is_not_even_carried() {
+    let keys = TempDir::new().unwrap();
+    make("passwords", keys.path());
+    let file = |name: &str| keys.path().join(format!("{name}.json5"));
+    let router = Role::Router { listen: Vec::new() };
+    let router = session::open(&router, Some(&file("router"))).await.unwrap();
+    let connect = session::endpoints(&router).await;
+    let parent = enter(&connect, Some(&file("parent"))).await.unwrap();
+    let operator = enter(&connect, Some(&file("operator"))).await.unwrap();
+    let sizes = Arc::new(Mutex::new(Vec::new()));
+    let noted = sizes.clone();
+    let key = "intermezzo/r/goal/normal";
+    let queryable = parent.declare_queryable(key).callback(move |query| {
+        let size = query.payload().unwrap().len();
+        noted.lock().unwrap().push(size);
+    });
+    queryable.background().await.unwrap();
+    let small_one_arrives = async {
+        while sizes.lock().unwrap().is_empty() {
+            for size in [2_000_000, 100_000] {
+                let asked = operator.get(key).payload(vec![b'x'; size]);
+                let answers = asked.timeout(Duration::from_secs(5)).await.unwrap();
+                while answers.recv_async().await.is_ok() {}
+            }
+        }
+    };
+    timeout(PATIENCE, small_one_arrives).await.unwrap();
+    assert_eq!(*sizes.lock().unwrap(), [100_000]);
+    session::close(operator).await;
+    session::close(parent).await;
+    session::close(router).await;
 }
 
 /// Tries to get in. `None` if that is refused.

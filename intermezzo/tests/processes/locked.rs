@@ -212,3 +212,31 @@ async fn more_than_a_robot_keeps_or_takes_is_rejected_in_words() {
     user.ok(&other).await;
     up.until_goal("ill", "goal_accepted").await;
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_robot_on_a_router_elsewhere_is_locked_as_well() {
+    let user = User::new().await;
+    let folder = user.path().join("keys");
+    let keys = folder.to_str().unwrap();
+    user.ok(&["certs", keys]).await;
+    let router = Role::Router { listen: Vec::new() };
+    let file = folder.join("router.json5");
+    let router = session::open(&router, Some(&file)).await.unwrap();
+    let connect = session::endpoints(&router).await;
+    let mut up = user
+        .up(&["--connect", &connect[0], "--security", keys])
+        .await;
+    user.ok(&["goal", "(go n4)", "--id", "far", "--security", keys])
+        .await;
+    let viewer = ["--security", keys, "--as", "viewer"];
+    let status = user.ok(&[["status"].as_slice(), &viewer].concat()).await;
+    assert!(status.out.contains("process"), "{status:?}");
+    assert_told_nothing(
+        &user
+            .run(&[["goal", "(go n4)"].as_slice(), &viewer].concat())
+            .await,
+    );
+    up.until_goal("far", "goal_succeeded").await;
+    drop(up);
+    session::close(router).await;
+}
