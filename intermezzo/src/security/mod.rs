@@ -163,6 +163,20 @@ mod tests {
     }
 
     #[test]
+    fn whoever_may_look_may_look_at_everything() {
+        let rules = get(&read(TLS.router), "access_control/rules");
+        for rule in rules.as_array().unwrap() {
+            if rule["id"] == "look" || rule["id"] == "see" {
+                for view in agent_link::View::ALL {
+                    let key = format!("intermezzo/*/*/{}", view.name());
+                    let keys = rule["key_exprs"].as_array().unwrap();
+                    assert!(keys.contains(&serde_json::json!(key)), "{key}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn no_ready_configuration_has_a_secret_in_it() {
         for (name, text) in PASSWORDS.clients {
             let user = get(&read(text), "transport/auth/usrpwd");

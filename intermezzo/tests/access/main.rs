@@ -33,7 +33,7 @@ const ASK: &[&str] = &["operator", "supervisor"];
 const LOOK: &[&str] = &["operator", "viewer", "supervisor"];
 
 /// What may be asked: the key, who may ask, and whom that reaches.
-const QUESTIONS: [(&str, &[&str], &[&str]); 28] = [
+const QUESTIONS: [(&str, &[&str], &[&str]); 29] = [
     ("goal/normal", ASK, &["parent"]),
     ("goal/normal/operator", &["operator"], &["parent"]),
     ("goal/normal/viewer", &[], &[]),
@@ -47,6 +47,7 @@ const QUESTIONS: [(&str, &[&str], &[&str]); 28] = [
     ("child/belief", LOOK, &["child"]),
     ("executor/stack", LOOK, &["executor"]),
     ("world/plans", LOOK, &["world"]),
+    ("parent/goals", LOOK, &["parent"]),
     ("parent/instruction", &[], &[]),
     ("parent/report", &["child"], &["parent"]),
     ("parent/facts", &[], &[]),
