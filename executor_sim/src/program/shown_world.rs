@@ -7,6 +7,10 @@ use serde_json::{Value, json};
 
 use crate::{MotorCommand, Sensor, World};
 
+/// How many of the latest things that were done are shown with every snapshot. All that are kept are
+/// in the view `stack`.
+const SHOWN: usize = 16;
+
 /// A [`World`] and the clock that says where in its motions it is: the world itself has none, and
 /// between two events everything in it is a formula of the time.
 pub(super) struct ShownWorld {
@@ -45,6 +49,8 @@ impl Inspect for ShownWorld {
             "speed_m_s": pose.speed_m_s,
             "speaking": pose.speaking,
             "odometer_m": self.world.odometer_m(now),
+            "done_count": self.world.done_count(),
+            "done": self.world.done().rev().take(SHOWN).rev().collect::<Vec<_>>(),
         })
     }
 
@@ -54,5 +60,9 @@ impl Inspect for ShownWorld {
             .map(|(door, open)| (door.to_string(), json!(open)))
             .collect();
         json!({ "doors": doors })
+    }
+
+    fn stack(&self) -> Value {
+        json!(self.world.done().collect::<Vec<_>>())
     }
 }

@@ -388,6 +388,8 @@ where
     /// Takes all that the machine has decided.
     fn collect(&mut self) {
         while let Some(output) = self.machine.poll_output() {
+            // What has something to say has found something new, even if it was only woken.
+            self.dirty = true;
             match output {
                 Output::Instruct { to, instruction } => self.send_instruction(to, instruction),
                 Output::Report { to, id, report } => {
