@@ -240,3 +240,38 @@ async fn a_robot_on_a_router_elsewhere_is_locked_as_well() {
     drop(up);
     session::close(router).await;
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_robot_that_is_flooded_goes_on_with_its_work() {
+    let user = User::new().await;
+    let mut up = user.up(&[]).await;
+    user.ok(&["goal", "(go n40)", "--id", "tour"]).await;
+    up.until_doing("arc5").await;
+    let connect = vec![up.endpoint.clone()];
+    let client = Role::Client { connect };
+    let session = session::open(&client, None).await.unwrap();
+    let flood = {
+        let session = session.clone();
+        tokio::spawn(async move {
+            let key = Keys::new("robot").unwrap().goal_normal();
+            let mut sent = 0_u64;
+            loop {
+                session.put(&key, "(go n4)").await.unwrap();
+                sent += 1;
+                if sent.is_multiple_of(100) {
+                    tokio::time::sleep(Duration::from_millis(1)).await;
+                }
+            }
+        })
+    };
+    up.until_goal("tour", "goal_succeeded").await;
+    let told = |event: &str| {
+        let of_parent = up.story.iter().filter(|told| told["agent"] == "parent");
+        of_parent.filter(|told| told["event"] == event).count()
+    };
+    assert!(told("goal_rejected") > 0, "it was not flooded");
+    // The tour, one that may have begun since, and those that wait.
+    assert!(told("goal_accepted") <= 66, "{}", told("goal_accepted"));
+    flood.abort();
+    session::close(session).await;
+}
