@@ -171,3 +171,145 @@ fn same_list(a: &TaskList, b: &TaskList) -> bool {
 fn all<T>(a: &[T], b: &[T], same: fn(&T, &T) -> bool) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Atom, Cost, Map, Time};
+    use crate::planner::{Frame, Item, Origin};
+    use crate::protocol::{ActionId, Urgency};
+
+    fn step() -> Step {
+        let item = Item::Task(Atom::new("go", []));
+        let frame = Frame {
+            id: 1,
+            task: item.clone(),
+            rest: TaskList::empty(),
+            parent: None,
+        };
+        Step {
+            rest: TaskList::empty().prepend(item.clone(), None),
+            item,
+            cost: Cost(1),
+            frame: Some(Arc::new(frame)),
+        }
+    }
+
+    fn id(number: u64) -> ActionId {
+        ActionId {
+            agent: "mid".into(),
+            epoch: 1,
+            number,
+        }
+    }
+
+    fn running() -> Running {
+        let mut intention = Intention::new(Goal {
+            id: "goal".into(),
+            tasks: vec![Atom::new("go", [])],
+            urgency: Urgency::Normal,
+            priority: 0,
+            deadline: None,
+            number: 1,
+            superior: None,
+            map: Arc::new(Map::default()),
+        });
+        intention.plans.push(Plan {
+            steps: vec![step()],
+            rest: step().rest,
+            cost: Cost(1),
+        });
+        intention.records.push(Record {
+            id: id(1),
+            executor: "left".into(),
+            step: step(),
+        });
+        Running {
+            intention,
+            phase: Phase::Executing(Execution {
+                id: id(2),
+                executor: "left".into(),
+                step: step(),
+                due: None,
+            }),
+            resumed: false,
+            set_aside: false,
+            broken: None,
+            surprised: false,
+        }
+    }
+
+    fn execution(running: &mut Running) -> &mut Execution {
+        match &mut running.phase {
+            Phase::Executing(execution) => execution,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn whatever_is_different_of_a_goal_is_noticed_and_nothing_else() {
+        let before = running();
+        let written = Written::new(&before.intention, Some(&before), None);
+        assert!(written.is_still(&before.intention, Some(&before)));
+        let copy = before.clone();
+        assert!(written.is_still(&copy.intention, Some(&copy)));
+        let alike = || step().rest;
+        let changes: &[fn(&mut Running)] = &[
+            |it| it.resumed = true,
+            |it| it.set_aside = true,
+            |it| it.broken = Some(String::new()),
+            |it| it.surprised = true,
+            |it| it.phase = Phase::Planning,
+            |it| it.phase = Phase::Stopping(execution(it).clone()),
+            |it| execution(it).id = id(3),
+            |it| execution(it).executor = "right".into(),
+            |it| execution(it).due = Some(Time::ZERO),
+            |it| execution(it).step.frame = None,
+            |it| execution(it).step.frame = step().frame,
+            |it| execution(it).step.cost = Cost(2),
+            |it| execution(it).step.item = Item::Task(Atom::new("stay", [])),
+            |it| it.intention.goal.map = Arc::new(Map::default()),
+            |it| it.intention.goal.deadline = Some(Time::ZERO),
+            |it| it.intention.agendas[0].origin = Origin::Tail,
+            |it| it.intention.agendas.clear(),
+            |it| it.intention.plans[0].cost = Cost(2),
+            |it| it.intention.plans[0].steps.clear(),
+            |it| it.intention.plans.clear(),
+            |it| it.intention.records[0].executor = "right".into(),
+            |it| it.intention.records[0].id = id(3),
+            |it| it.intention.records[0].step = step(),
+            |it| it.intention.records.clear(),
+            |it| it.intention.started = true,
+            |it| it.intention.fits = false,
+            |it| it.intention.orphaned = true,
+            |it| it.intention.cancelled = Some(String::new()),
+            |it| it.intention.last_failure = Some(String::new()),
+            |it| it.intention.blocked_by.extend([Atom::new("open", [])]),
+            |it| it.intention.failures.extend([(Atom::new("go", []), 1)]),
+            |it| it.intention.lost.extend([id(1)]),
+            |it| it.intention.done_once.extend([1]),
+        ];
+        for (number, change) in changes.iter().enumerate() {
+            let mut after = before.clone();
+            change(&mut after);
+            assert!(
+                !written.is_still(&after.intention, Some(&after)),
+                "{number}"
+            );
+        }
+        // What only looks alike has another place in the network.
+        for change in [0, 1, 2] {
+            let mut after = before.clone();
+            match change {
+                0 => execution(&mut after).step.rest = alike(),
+                1 => after.intention.plans[0].rest = alike(),
+                _ => after.intention.agendas[0].tasks = alike(),
+            }
+            assert!(
+                !written.is_still(&after.intention, Some(&after)),
+                "{change}"
+            );
+        }
+        assert!(!written.is_still(&before.intention, None));
+    }
+}

@@ -8,7 +8,7 @@ use std::convert::Infallible;
 use super::*;
 use crate::agent::tests::history::{Dice, History};
 use crate::agent::tests::toy;
-use crate::planner::{GraphPlanner, NaivePlanner, Settings};
+use crate::planner::{Frame, GraphPlanner, NaivePlanner, Settings};
 use crate::protocol::{ActionId, Input, Instruction, Machine, Output};
 
 fn seeds(usual: u64) -> Range<u64> {
@@ -83,6 +83,31 @@ fn recalled<P: Planner>(epoch: u64, planner: P, rows: &Rows) -> Result<Agent<P>,
     Ok(agent)
 }
 
+/// Of every number there is one frame, however often it is met: a task is told by it.
+fn frames_are_told_apart<P: Planner>(agent: &Agent<P>) -> bool {
+    let mut numbers: BTreeMap<u64, usize> = BTreeMap::new();
+    for intention in agent.all_intentions() {
+        let agendas = intention.agendas.iter().map(|agenda| &agenda.tasks);
+        let steps = intention.plans.iter().flat_map(|plan| &plan.steps);
+        let steps = steps.chain(intention.records.iter().map(|record| &record.step));
+        let mut frames: Vec<&Arc<Frame>> = steps.clone().flat_map(|s| &s.frame).collect();
+        for mut list in agendas.chain(steps.map(|step| &step.rest)) {
+            while let Some((_, frame, rest)) = list.first() {
+                frames.extend(frame);
+                list = rest;
+            }
+        }
+        while let Some(frame) = frames.pop() {
+            let address = Arc::as_ptr(frame).addr();
+            if *numbers.entry(frame.id).or_insert(address) != address {
+                return false;
+            }
+            frames.extend(&frame.parent);
+        }
+    }
+    true
+}
+
 /// Runs a history of an agent that writes itself down after every input, and shows each state with
 /// the rows and the history up to there, in which restarts are as frequent as anything else.
 fn live<P: Planner + Clone>(
@@ -103,6 +128,7 @@ fn live<P: Planner + Clone>(
         }
         history.hear(&drained(&mut agent));
         agent.check();
+        assert!(frames_are_told_apart(&agent), "RECALL_SEED={seed}");
         apply(&mut rows, agent.write_down());
         assert_eq!(
             rows,
