@@ -8,6 +8,7 @@ use super::{Controller, MotorCommand};
 
 const LAST_TICKET: &str = "m/ticket";
 const RUNNING: &str = "m/running";
+const WAITING: &str = "m/waiting";
 const FAULTS: &str = "m/faults";
 
 impl Durable for Controller {
@@ -18,6 +19,10 @@ impl Durable for Controller {
         match &self.active {
             Some(active) => ledger.put(RUNNING.to_owned(), &active.begun),
             None => ledger.remove(RUNNING),
+        }
+        match &self.waiting {
+            Some(waiting) => ledger.put(WAITING.to_owned(), waiting),
+            None => ledger.remove(WAITING),
         }
         self.memory.write_down(ledger);
         self.surroundings.write_down(ledger);
@@ -37,6 +42,7 @@ impl Durable for Controller {
             let at = begun.at;
             Active::found(begun, at)
         });
+        self.waiting = read_row(rows, WAITING)?;
         self.ledger = Ledger::of(rows, "m/");
         // What was said when it was made had another number.
         self.outputs.clear();

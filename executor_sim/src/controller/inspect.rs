@@ -26,6 +26,7 @@ impl Inspect for Controller {
             // Where it stood last: while it drives, only the world knows.
             "stood": self.surroundings.place().map(Place::to_string),
             "faults": self.faults.to_string(),
+            "waiting": self.waiting.as_ref().map(|waiting| record(&waiting.job)),
             "halting": self.halt.is_some(),
             "gone": self.gone.iter().map(Symbol::as_str).collect::<Vec<_>>(),
         })

@@ -3,6 +3,7 @@
 use agent_core::model::{Action, Symbol, Time};
 use agent_core::protocol::{ActionId, Answer, Happening, Instruction, Report};
 
+use super::waiting::Waiting;
 use super::{Controller, End, Record, Skill};
 use crate::{Place, WORLD};
 
@@ -15,14 +16,14 @@ impl Controller {
     ) -> Answer {
         match instruction {
             Instruction::Execute { id, action, .. } => self.execute(now, from, id, action),
-            Instruction::Suspend { id } => self.suspend(now, from, &id),
+            Instruction::Suspend { id } => self.suspend(now, &id),
             Instruction::Resume { id, .. } => self.resume(now, &from, &id),
             Instruction::Clear { id } => self.clear(now, &id),
         }
     }
 
     fn execute(&mut self, now: Time, superior: Symbol, id: ActionId, action: Action) -> Answer {
-        if self.active(&id).is_some() {
+        if self.active(&id).is_some() || self.waits(&id).is_some() {
             return Answer::Accepted;
         }
         if self.memory.record(&id).is_some() {
@@ -38,7 +39,7 @@ impl Controller {
             Ok(skill) => skill,
             Err(reason) => return rejected(reason),
         };
-        let (rest, suspendable) = skill;
+        let (rest, suspendable, waits) = skill;
         let gone = self.gone.contains(&superior);
         if gone && !suspendable {
             return rejected(format!("`{superior}`, which wants it, is gone"));
@@ -46,7 +47,7 @@ impl Controller {
         let job = Record {
             id: id.clone(),
             superior,
-            action: action.clone(),
+            action,
             rest,
         };
         if gone {
@@ -54,34 +55,52 @@ impl Controller {
             self.keep(now, job);
             return Answer::Accepted;
         }
+        if waits {
+            self.waiting = Some(Waiting {
+                job,
+                suspendable,
+                resumed: false,
+            });
+            return Answer::Accepted;
+        }
         let fault = self.faults.next_action();
-        self.set_going(now, job.clone(), suspendable, fault);
-        self.event(now, &job, Happening::ActionStarted { id, action });
+        self.begin(now, job, suspendable, false, fault);
         Answer::Accepted
     }
 
-    /// What the robot can begin now, and whether that can be suspended; or why it cannot.
-    fn fitting(&self, action: &Action) -> Result<(Skill, bool), String> {
+    /// What the robot can begin now, whether that can be suspended, and whether it has to stand
+    /// first; or why it cannot.
+    fn fitting(&self, action: &Action) -> Result<(Skill, bool, bool), String> {
         let (skill, suspendable) = self.vocabulary.skill(action)?;
-        let place = self.free_to_begin()?;
-        match &skill {
-            Skill::Drive { arc, to } => self.fits(arc, to, place)?,
-            Skill::SetDoor { door, .. } => {
-                if !self.surroundings.floor().doors().contains_key(door) {
-                    return Err(format!("there is no door `{door}`"));
+        if self.is_only_halting() {
+            return Ok((skill, suspendable, true));
+        }
+        self.free_to_begin()?;
+        self.fits_here(&skill)?;
+        Ok((skill, suspendable, false))
+    }
+
+    /// Whether that can be done from where the robot stands.
+    pub(super) fn fits_here(&self, skill: &Skill) -> Result<(), String> {
+        match (skill, self.surroundings.place()) {
+            (Skill::Drive { arc, to }, Some(place)) => self.fits(arc, to, place),
+            (Skill::SetDoor { door, .. }, _) => {
+                let doors = self.surroundings.floor().doors();
+                if doors.contains_key(door) {
+                    Ok(())
+                } else {
+                    Err(format!("there is no door `{door}`"))
                 }
             }
-            Skill::Speak { .. } | Skill::Deed { .. } => {}
+            _ => Ok(()),
         }
-        Ok((skill, suspendable))
     }
 
     fn free_to_begin(&self) -> Result<&Place, String> {
-        if let Some(active) = &self.active {
-            let action = &active.begun.job.action;
-            if self.halt.is_none() {
-                return Err(format!("the robot is busy with {action}"));
-            }
+        let waiting = self.waiting.as_ref().map(|waiting| &waiting.job);
+        let active = self.active.as_ref().map(|active| &active.begun.job);
+        if let Some(job) = waiting.or(active.filter(|_| self.halt.is_none())) {
+            return Err(format!("the robot is busy with {}", job.action));
         }
         if self.gone.contains(WORLD) {
             return Err("the robot's motors and sensors cannot be reached".to_owned());
@@ -107,7 +126,7 @@ impl Controller {
         Ok(())
     }
 
-    fn suspend(&mut self, now: Time, from: Symbol, id: &ActionId) -> Answer {
+    fn suspend(&mut self, now: Time, id: &ActionId) -> Answer {
         if let Some(active) = self.active(id) {
             let finishes_in = active.expected_end.since(now);
             if self.try_to_stop(now) {
@@ -115,13 +134,16 @@ impl Controller {
             }
             return Answer::Refused { finishes_in };
         }
-        if let Some(record) = self.memory.record(id) {
-            // Who asks again has not heard the report: it has started anew since.
-            let asked_again = Record {
-                superior: from,
-                ..record.clone()
-            };
-            self.report_suspended(&asked_again);
+        if self.waits(id).is_some() {
+            if self.set_waiting_aside(now) {
+                return Answer::Suspending;
+            }
+            let finishes_in = Time::ZERO;
+            return Answer::Refused { finishes_in };
+        }
+        if self.memory.record(id).is_some() {
+            // It was reported that it is, once: a second report might be taken for one of a later
+            // suspension.
             return Answer::Suspending;
         }
         match self.over(id) {
@@ -139,6 +161,9 @@ impl Controller {
                 Answer::Accepted
             };
         }
+        if self.waits(id).is_some() {
+            return Answer::Accepted;
+        }
         let Some(record) = self.memory.record(id) else {
             return match self.over(id) {
                 Some(Some(outcome)) => Answer::Finished { outcome },
@@ -150,6 +175,14 @@ impl Controller {
             // Nobody could stop it: it is as if it had been suspended at once.
             let record = record.clone();
             self.report_suspended(&record);
+            return Answer::Accepted;
+        }
+        if self.is_only_halting() {
+            self.waiting = self.memory.take(id).map(|job| Waiting {
+                job,
+                suspendable: true,
+                resumed: true,
+            });
             return Answer::Accepted;
         }
         let place = match self.free_to_begin() {
@@ -168,9 +201,7 @@ impl Controller {
             return Answer::Accepted;
         }
         // It has been suspended, so it can be.
-        self.set_going(now, job.clone(), true, None);
-        let (id, action) = (id.clone(), job.action.clone());
-        self.event(now, &job, Happening::ActionResumed { id, action });
+        self.begin(now, job, true, true, None);
         Answer::Accepted
     }
 
@@ -181,6 +212,9 @@ impl Controller {
             } else {
                 format!("{id} is running: suspend it first")
             });
+        }
+        if self.waits(id).is_some() {
+            return rejected(format!("{id} is running: suspend it first"));
         }
         if let Some(job) = self.memory.take(id) {
             self.memory.end(&job, End::Cleared);

@@ -11,6 +11,7 @@ mod restart;
 mod sensors;
 mod skill;
 mod surroundings;
+mod waiting;
 
 use std::collections::{BTreeSet, VecDeque};
 
@@ -25,13 +26,14 @@ use crate::{Faults, Floor, MotorCommand, Sensor, Ticket};
 use active::{Active, Begun, Run};
 use memory::{End, Memory, Record};
 use surroundings::Surroundings;
+use waiting::Waiting;
 
 pub use skill::{Skill, Vocabulary, VocabularyError};
 
 /// What superiors talk to. It knows the world only by its sensors.
 ///
 /// Invariant: the motors carry out at most one command of its, that of the active action; it sends
-/// one only to answer an instruction. After a start it first halts everything and accepts nothing
+/// one only to answer an instruction. After a start it first halts everything and begins nothing
 /// before the sensors have said where the robot stands. The action that was running is suspended
 /// then, or it ends: as what the sensors tell of it, or unknown.
 ///
@@ -44,6 +46,7 @@ pub struct Controller {
     faults: Faults,
     memory: Memory,
     active: Option<Active>,
+    waiting: Option<Waiting>,
     last_ticket: u64,
     /// Everything was told to halt, and has not said yet that it has.
     halt: Option<Ticket>,
@@ -69,6 +72,7 @@ impl Controller {
             faults,
             memory: Memory::default(),
             active: None,
+            waiting: None,
             last_ticket: 0,
             halt: None,
             gone: BTreeSet::new(),

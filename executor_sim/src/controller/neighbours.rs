@@ -18,9 +18,12 @@ impl Controller {
         if !news {
             return;
         }
-        if !there && self.is_superior_of_active(&name) {
+        if !there {
             // Who cannot be stopped must not move. What cannot be stopped runs to its end.
-            let _ = self.try_to_stop(now);
+            if self.is_superior_of_active(&name) {
+                let _ = self.try_to_stop(now);
+            }
+            self.waits_for_nobody(now, &name);
         }
         let what = if there {
             Happening::NeighbourBack { name }
@@ -45,6 +48,8 @@ impl Controller {
             let (id, action) = (record.id.clone(), record.action.clone());
             self.event(now, &record, Happening::RecordCleared { id, action });
         }
+        self.waiting
+            .take_if(|waiting| waiting.job.superior == *name);
         if self.is_superior_of_active(name) {
             let _ = self.try_to_stop(now);
             if let Some(active) = &mut self.active {

@@ -66,6 +66,7 @@ impl Controller {
                 Some(cut) => self.settle(now, active, cut, account),
             },
         }
+        self.begin_what_waits(now);
     }
 
     /// Decides how an action that was cut off goes on or has ended.

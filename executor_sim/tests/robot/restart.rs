@@ -156,6 +156,31 @@ fn an_action_of_before_is_known_by_its_name_before_the_robot_stands() {
 }
 
 #[test]
+fn what_comes_before_the_robot_has_said_where_it_stands_is_begun_then() {
+    for (suspended, dies) in [(false, false), (true, false), (false, true)] {
+        let mut pair = Pair::new("n1");
+        pair.settle();
+        pair.die(false);
+        pair.execute(1, "narrate n1");
+        pair.hear();
+        pair.commit();
+        assert_eq!(pair.answers[0].1, Answer::Accepted);
+        if suspended {
+            pair.instruct(Instruction::Suspend { id: id(1) });
+            pair.hear();
+            pair.commit();
+        }
+        if dies {
+            pair.die(false);
+        }
+        pair.live(60.0);
+        let said = pair.told(1);
+        assert_eq!(is_suspended(said[0]), suspended);
+        assert_eq!(is_success(said[said.len() - 1]), !suspended);
+    }
+}
+
+#[test]
 fn a_robot_whose_superior_is_gone_stands_still_and_remembers() {
     let there = |there| {
         Arrival::Input(Input::Neighbour {
