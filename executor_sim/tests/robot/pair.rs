@@ -7,7 +7,9 @@ use agent_core::protocol::{
     ActionId, Answer, Arrival, Durable, Effect, Envelope, Input, Instruction, Report, ReportBody,
     Response, Rows, Station, read_row,
 };
-use executor_sim::{Controller, Doing, Faults, MotorCommand, MoverSpec, Place, Sensor, World};
+use executor_sim::{
+    Controller, Doing, Done, Faults, MotorCommand, MoverSpec, Place, Sensor, World,
+};
 
 use crate::rig::{atom, domain, floor, id, write_rows};
 
@@ -32,6 +34,11 @@ pub struct Pair {
     reality: Rows,
     /// On their way to the world; they die with the controller, or come late.
     pub commands: VecDeque<Envelope<MotorCommand>>,
+    /// Those that the world has got at this very moment: it may not have acknowledged them yet.
+    just_heard: VecDeque<Envelope<MotorCommand>>,
+    /// All that was ever done, by whatever world.
+    done: Vec<Done>,
+    seen: u64,
     /// From the world, repeated until the controller has acknowledged them.
     pub sensors: VecDeque<Envelope<Sensor>>,
     /// To the robot, repeated until they are answered.
@@ -74,6 +81,9 @@ impl Pair {
             journal: Rows::new(),
             reality: Rows::new(),
             commands: VecDeque::new(),
+            just_heard: VecDeque::new(),
+            done: Vec::new(),
+            seen: 0,
             sensors: VecDeque::new(),
             instructions: VecDeque::new(),
             next_instruction: 1,
@@ -91,6 +101,10 @@ impl Pair {
 
     /// What the world has to say goes on the wire.
     fn world_says(&mut self) {
+        let world = self.world.machine();
+        let news = world.done().filter(|done| done.number > self.seen);
+        self.done.extend(news.cloned());
+        self.seen = world.done_count();
         self.world.release();
         while let Some(effect) = self.world.poll_effect() {
             if let Effect::Local(message) = effect {
@@ -224,6 +238,7 @@ impl Pair {
     /// The first command on the wire gets to the motors.
     pub fn command(&mut self) {
         if let Some(command) = self.commands.pop_front() {
+            self.just_heard.push_back(command.clone());
             self.world.handle(self.now, Arrival::Local(command), None);
             self.world_says();
         }
@@ -253,6 +268,9 @@ impl Pair {
     /// The world goes on until then; nobody hears of it yet.
     pub fn pass(&mut self, seconds: f64) {
         let until = self.now + Time::from_secs(seconds);
+        if until > self.now {
+            self.just_heard.clear();
+        }
         while let Some(due) = self.world.wake_at().filter(|due| *due <= until) {
             self.now = self.now.max(due);
             self.world
@@ -299,6 +317,7 @@ impl Pair {
         if !late {
             self.commands.clear();
         }
+        self.just_heard.clear();
         self.epoch += 1;
         self.stood = false;
         let fresh = controller(&self.faults);
@@ -345,12 +364,16 @@ impl Pair {
         self.epoch += 1;
         self.world = Station::new("world".into(), self.epoch, world);
         self.sensors.clear();
+        self.seen = self.world.machine().done_count();
+        // What was not acknowledged is sent again.
+        self.just_heard.append(&mut self.commands);
+        std::mem::swap(&mut self.just_heard, &mut self.commands);
         self.world_says();
     }
 
     /// How often the world says that it was done to the end.
     pub fn deeds(&self, what: &str) -> usize {
-        let done = self.world.machine().done();
+        let done = self.done.iter();
         done.filter(|done| done.to_the_end)
             .filter(|done| matches!(&done.what, Doing::Deed { what: deed } if *deed == atom(what)))
             .count()

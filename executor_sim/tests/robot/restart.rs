@@ -401,8 +401,6 @@ fn live(seed: u64, world_dies: bool) {
             18 if rng.random_ratio(1, 2) => pair.die(rng.random_ratio(1, 2)),
             19 => pair.remember_reality(),
             20 if world_dies && rng.random_ratio(1, 4) => {
-                // A world that forgets is another matter: see what is not promised.
-                pair.remember_reality();
                 pair.reality_ends();
             }
             21 if rng.random_ratio(1, 3) => {
@@ -421,6 +419,31 @@ fn live(seed: u64, world_dies: bool) {
         check_numbers(&pair);
     }
     check_ends(&pair);
+    check_memory(&mut pair);
+    check_ends(&pair);
+}
+
+/// Another start later nothing is begun again under its old name, and what is suspended goes on.
+fn check_memory(pair: &mut Pair) {
+    pair.die(false);
+    pair.live(1.0);
+    let numbers: Vec<u64> = pair.ends().into_keys().collect();
+    for number in numbers {
+        let ended = last(pair, number).is_end();
+        let (name, map) = (id(number), None);
+        let answer = if ended {
+            pair.execute(number, "narrate n1");
+            pair.settle();
+            let answer = &pair.answers.last().expect("an answer").1;
+            matches!(answer, Answer::Finished { .. })
+        } else {
+            pair.instruct(Instruction::Resume { id: name, map });
+            pair.live(100.0);
+            let answer = &pair.answers.last().expect("an answer").1;
+            *answer == Answer::Accepted && last(pair, number).is_end()
+        };
+        assert!(answer, "{number} was forgotten");
+    }
 }
 
 fn some_action(rng: &mut ChaCha8Rng, number: u64) -> String {
