@@ -27,6 +27,7 @@ use redb::{Database, Durability, TableDefinition, WriteTransaction};
 
 pub use disk::{Disk, FileDisk, Medium};
 pub use error::{CommitError, JournalError};
+pub use redb::StorageBackend;
 
 use disk::{AnyMedium, in_words};
 use examine::{FORMAT_KEY, WHAT_KEY, builder, examine};

@@ -1,5 +1,6 @@
 //! What users do: ask for goals, look inside, watch.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 use agent_core::model::Symbol;
@@ -14,7 +15,7 @@ use zenoh::query::{ConsolidationMode, QueryTarget};
 use crate::clock::epoch_now;
 use crate::inspect::View;
 use crate::keys::{Keys, NameError};
-use crate::wire::{self, CommandVerdict, FactsVerdict, Verdict, WireError};
+use crate::wire::{self, CommandVerdict, EventNumber, FactsVerdict, Verdict, WireError};
 
 /// A question is asked again for this long before nobody counts as there: right after a
 /// connection is made, or made again, questions may go nowhere.
@@ -132,6 +133,19 @@ impl Client {
         }
     }
 
+    /// How a goal stands with an agent, as [`Inspect::goals`](crate::Inspect::goals) says; `None` if
+    /// the agent knows of no goal of that name, or no longer.
+    ///
+    /// # Errors
+    /// If nobody answers.
+    pub async fn goal_state(&self, agent: &str, id: &str) -> Result<Option<Value>, ClientError> {
+        let key = self.keys.agent(agent)?.view(View::Goals.name());
+        let mut answer: Value = self.ask("view", &key, id).await?;
+        let goals = answer[View::Goals.name()].as_array_mut();
+        // The same name may have been used before; the first is the one that counts.
+        Ok(goals.and_then(|goals| goals.drain(..).next()))
+    }
+
     /// The agents that are alive, and the epochs of their starts. One that hangs counts for two
     /// seconds more.
     pub async fn alive(&self) -> Result<Vec<(String, u64)>, ClientError> {
@@ -162,7 +176,10 @@ impl Client {
             .declare_subscriber(self.keys.event())
             .callback(move |sample| {
                 let line = sample.payload().to_bytes();
-                if events.try_send(wire::event_from_line(&line)).is_err() {
+                if events
+                    .try_send(wire::numbered_event_from_line(&line))
+                    .is_err()
+                {
                     tracing::warn!("an event is lost: more than {EVENTS_WAITING} wait");
                 }
             })
@@ -170,6 +187,7 @@ impl Client {
             .map_err(ClientError::Zenoh)?;
         Ok(Events {
             queue,
+            seen: Seen::default(),
             _subscriber: subscriber,
         })
     }
@@ -225,13 +243,46 @@ fn new_id(goal: &GoalRequest) -> GoalId {
 
 /// A stream of events, in the order in which they came.
 pub struct Events {
-    queue: mpsc::Receiver<Result<(Symbol, Event), WireError>>,
+    queue: mpsc::Receiver<Result<Numbered, WireError>>,
+    seen: Seen,
     _subscriber: Subscriber<()>,
 }
 
 impl Events {
-    /// The next event and the agent that tells it. `None` once there can be no more.
+    /// The next event and the agent that tells it. `None` once there can be no more. What an agent
+    /// tells again after a restart is left out.
     pub async fn next(&mut self) -> Option<Result<(Symbol, Event), WireError>> {
-        self.queue.recv().await
+        loop {
+            return Some(match self.queue.recv().await? {
+                Ok((agent, number, event)) => {
+                    if number.is_some_and(|number| !self.seen.is_new(&agent, number)) {
+                        continue;
+                    }
+                    Ok((agent, event))
+                }
+                Err(error) => Err(error),
+            });
+        }
+    }
+}
+
+/// An event, the agent that tells it, and its number.
+type Numbered = (Symbol, Option<EventNumber>, Event);
+
+/// The latest events that were seen, by agent.
+#[derive(Debug, Default)]
+struct Seen(BTreeMap<Symbol, BTreeSet<EventNumber>>);
+
+impl Seen {
+    /// So many are known again; agents tell fewer again.
+    const KEPT: usize = 1024;
+
+    fn is_new(&mut self, agent: &Symbol, number: EventNumber) -> bool {
+        let seen = self.0.entry(agent.clone()).or_default();
+        let new = seen.insert(number);
+        if seen.len() > Self::KEPT {
+            seen.pop_first();
+        }
+        new
     }
 }

@@ -5,8 +5,9 @@ use std::future::Future;
 use std::pin::pin;
 use std::time::Duration;
 
-use agent_core::model::Time;
-use agent_core::protocol::{Input, Machine};
+use agent_core::model::{Symbol, Time};
+use agent_core::protocol::{Arrival, Durable, Input, Rows, Station};
+use agent_journal::Journal;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -17,113 +18,216 @@ use crate::clock::Clock;
 use crate::incoming::ReplyTo;
 use crate::inspect::Inspect;
 use crate::link::Link;
-use crate::mailbox::Arrival;
+use crate::mailbox;
 use crate::wire::{self, WireError};
 pub use crate::wiring::{LinkError, Wiring};
+use crate::writer::Writer;
 
-/// Drives `machine` until `shutdown`, and gives it back.
+/// A journal, and what was in it when it was opened. Without one, a machine forgets everything when
+/// its process ends.
+pub type Memory = Option<(Journal, Rows)>;
+
+/// Drives `machine`, which has just been made, until `shutdown`, and gives it back. Before, it
+/// recalls what one of its name has written down.
 ///
 /// What has come in is taken before the machine thinks on: an emergency never waits for a plan.
+///
+/// # Errors
+/// If what was written down does not fit the machine, or another process has taken its place.
 pub async fn drive<M>(
     machine: M,
+    memory: Memory,
     wiring: Wiring,
     session: &Session,
     clock: Clock,
     shutdown: impl Future<Output = ()>,
 ) -> Result<M, LinkError>
 where
-    M: Machine + Inspect,
+    M: Durable + Inspect,
     M::In: DeserializeOwned,
-    M::Out: Serialize,
+    M::Out: Serialize + Clone,
 {
     let local = Local {
         read: |value| wire::body("message", value),
         write: wire::to_value,
     };
-    run(machine, wiring, session, clock, shutdown, local).await
+    run(machine, memory, wiring, session, clock, shutdown, local).await
 }
 
 /// As [`drive`], for an agent, which hears from and tells nobody but superiors and executors.
+///
+/// # Errors
+/// As [`drive`].
 pub async fn drive_agent<M>(
     machine: M,
+    memory: Memory,
     wiring: Wiring,
     session: &Session,
     clock: Clock,
     shutdown: impl Future<Output = ()>,
 ) -> Result<M, LinkError>
 where
-    M: Machine<In = Infallible, Out = Infallible> + Inspect,
+    M: Durable<In = Infallible, Out = Infallible> + Inspect,
 {
     let local = Local {
         read: |_| Err(WireError::malformed("message", "nothing is expected here")),
         write: |never: &Infallible| match *never {},
     };
-    run(machine, wiring, session, clock, shutdown, local).await
+    run(machine, memory, wiring, session, clock, shutdown, local).await
 }
 
 /// How [`Input::Local`] and its counterpart travel.
-struct Local<M: Machine> {
+struct Local<M: Durable> {
     read: fn(Value) -> Result<M::In, WireError>,
     write: fn(&M::Out) -> Result<Value, WireError>,
 }
 
-async fn run<M: Machine + Inspect>(
-    mut machine: M,
+async fn run<M>(
+    machine: M,
+    memory: Memory,
     wiring: Wiring,
     session: &Session,
     clock: Clock,
     shutdown: impl Future<Output = ()>,
     local: Local<M>,
-) -> Result<M, LinkError> {
+) -> Result<M, LinkError>
+where
+    M: Durable + Inspect,
+    M::Out: Clone,
+{
+    let (mut station, mut writer) = recall(machine, memory, &wiring)?;
     let mut snapshots = wiring.snapshots_every.map(every);
+    let waits_for_the_disk = wiring.waits_for_the_disk;
     let (mut link, mut arrivals) = Link::open(session, wiring).await?;
     let mut shutdown = pin!(shutdown);
     let result = loop {
-        if let Err(error) = drain(&mut machine, &mut link, local.write) {
+        write(&mut station, writer.as_mut(), &mut link, waits_for_the_disk);
+        if let Err(error) = send(&mut station, &mut link, local.write) {
             break Err(error);
         }
         let arrival = tokio::select! {
             biased;
             () = &mut shutdown => break Ok(()),
+            written = written(writer.as_mut()) => {
+                match written {
+                    Ok(()) => station.written(),
+                    Err(error) => tracing::warn!("{error}"),
+                }
+                continue;
+            }
             Some(arrival) = arrivals.recv() => Some(arrival),
             () = tick(snapshots.as_mut()) => {
-                link.snapshot(clock.now(), machine.snapshot());
+                link.snapshot(clock.now(), station.machine().snapshot());
                 continue;
             }
-            () = wake(&clock, machine.wake_at()) => None,
+            () = wake(&clock, station.wake_at()) => None,
         };
-        let (input, sender) = match arrival {
-            None => (Input::Wake, ReplyTo::Nobody),
-            Some(Arrival::Look(view, question)) => {
-                question.answer(link.view(view, &machine));
+        let (arrival, sender) = match arrival {
+            None => (Arrival::Input(Input::Wake), None),
+            Some(mailbox::Arrival::Look(view, question)) => {
+                let journal = writer.as_ref().map(|writer| writer.view(station.held()));
+                link.show(view, question, station.machine(), journal);
                 continue;
             }
-            Some(Arrival::Superseded(key)) => {
+            Some(mailbox::Arrival::Superseded(key)) => {
                 let name = link.wiring.name.clone();
                 break Err(LinkError::Superseded { name, key });
             }
+            Some(mailbox::Arrival::Outdated(key, seq)) => {
+                let name = link.wiring.name.clone();
+                break Err(LinkError::Outdated { name, key, seq });
+            }
             Some(arrival) => match link.read(arrival, local.read) {
-                Some(input) => input,
+                Some(arrival) => arrival,
                 None => continue,
             },
         };
-        let reply = machine.handle(clock.now(), input);
-        link.reply(sender, reply);
+        station.handle(clock.now(), arrival, sender);
     };
     link.close().await;
-    result.map(|()| machine)
+    if let Some(writer) = writer {
+        writer.finish().await;
+    }
+    result.map(|()| station.into_machine())
 }
 
-/// Sends all that the machine has decided.
-fn drain<M: Machine>(
-    machine: &mut M,
+/// The machine as it was when it wrote last.
+fn recall<M>(
+    machine: M,
+    memory: Memory,
+    wiring: &Wiring,
+) -> Result<(Station<M, ReplyTo>, Option<Writer>), LinkError>
+where
+    M: Durable,
+    M::Out: Clone,
+{
+    let name = Symbol::from(wiring.name.as_str());
+    let Some((journal, rows)) = memory else {
+        return Ok((Station::new(name, wiring.epoch, machine), None));
+    };
+    let place = journal.name();
+    match Station::recall(name, wiring.epoch, machine, &rows) {
+        Ok(station) => {
+            let writer = Writer::start(journal).map_err(LinkError::Thread)?;
+            Ok((station, Some(writer)))
+        }
+        Err(why) => Err(LinkError::Unreadable { place, why }),
+    }
+}
+
+/// Has written down what is different, as soon as the last is on the disk.
+fn write<M>(
+    station: &mut Station<M, ReplyTo>,
+    writer: Option<&mut Writer>,
+    link: &mut Link,
+    waits_for_the_disk: bool,
+) where
+    M: Durable,
+    M::Out: Clone,
+{
+    if let Some(writer) = writer {
+        if writer.is_idle()
+            && station.wants_writing()
+            && let Some(rows) = station.write_down()
+        {
+            writer.begin(rows);
+        }
+        link.trouble = writer.trouble().map(ToString::to_string);
+        if waits_for_the_disk {
+            if let Some(trouble) = &link.trouble {
+                for sender in station.refuse_waiting() {
+                    link.not_written(sender, trouble);
+                }
+            }
+            return;
+        }
+    }
+    station.release();
+}
+
+/// Sends all that may go out.
+fn send<M>(
+    station: &mut Station<M, ReplyTo>,
     link: &mut Link,
     local: fn(&M::Out) -> Result<Value, WireError>,
-) -> Result<(), LinkError> {
-    while let Some(output) = machine.poll_output() {
-        link.send(output, local)?;
+) -> Result<(), LinkError>
+where
+    M: Durable,
+    M::Out: Clone,
+{
+    let line = station.line();
+    while let Some(effect) = station.poll_effect() {
+        link.send(line, effect, local)?;
     }
     Ok(())
+}
+
+/// Returns when the journal is written, or could not be.
+async fn written(writer: Option<&mut Writer>) -> Result<(), agent_journal::CommitError> {
+    match writer {
+        None => std::future::pending().await,
+        Some(writer) => writer.next().await,
+    }
 }
 
 /// When the machine is to be woken. Never, if it has no wish; if the time has passed already, as

@@ -1,115 +1,182 @@
-//! What has come in, as an input of the machine; and the machine's reply, as an answer.
+//! What has come in, as the machine's station takes it; and the station's response, as an answer.
 
 use std::sync::Arc;
 
-use agent_core::protocol::{GoalRequest, Input, Reply, Urgency};
+use agent_core::protocol::{self, Arrival, Envelope, GoalRequest, Input, Response, Urgency};
 use serde_json::Value;
 use zenoh::bytes::ZBytes;
 
-use crate::channel::Received;
 use crate::facts::Reading;
 use crate::link::Link;
-use crate::mailbox::{Arrival, Asked};
+use crate::mailbox::{self, Asked};
 use crate::question::{Question, bounded};
 use crate::wire::{
-    self, AGENT_LIMIT_BYTES, Answer, CommandVerdict, FactsVerdict, Instruction, Observed,
-    ReportBody, USER_LIMIT_BYTES, Verdict, WireError,
+    self, AGENT_LIMIT_BYTES, Acknowledgement, CommandVerdict, FactsVerdict, Instruction, Message,
+    Observed, ReportBody, USER_LIMIT_BYTES, Verdict, WireError,
 };
 
-/// Who waits for the reply to an input.
+/// Who waits for a response.
 #[derive(Debug)]
 pub(crate) enum ReplyTo {
-    Nobody,
-    Superior(Received),
-    Executor(Received),
-    Elsewhere(Received),
+    /// Who has sent the message of that number.
+    Sender(u64, Question),
     /// Without a question, the verdict is published.
     User(GoalRequest, Option<Question>),
     Commander(Question),
+    Witness(Question),
 }
 
+/// What the station takes, and who waits for the response.
+type Taken<L> = (Arrival<L>, Option<ReplyTo>);
+
 impl Link {
-    /// What an arrival is to the machine. `None`: it was seen to here.
+    /// What an arrival is to the machine's station. `None`: it was seen to here.
     pub(crate) fn read<L>(
         &mut self,
-        arrival: Arrival,
+        arrival: mailbox::Arrival,
         local: fn(Value) -> Result<L, WireError>,
-    ) -> Option<(Input<L>, ReplyTo)> {
+    ) -> Option<Taken<L>> {
+        use mailbox::Arrival as Raw;
         match arrival {
-            Arrival::Instruction(question) => self.read_instruction(question),
-            Arrival::Report(question) => {
-                let (body, received) = self.reports.open_as("report", question, |body| {
-                    wire::body::<ReportBody>("report", body)
-                })?;
-                let (id, report) = (body.id.0, body.report.into());
-                Some((Input::Report { id, report }, ReplyTo::Executor(received)))
+            Raw::Instruction(question) => self.read_instruction(question),
+            Raw::Report(question) => {
+                let report = |body| wire::body::<ReportBody>("report", body);
+                let (message, sender) = self.read_as("report", question, report)?;
+                let message = message.map(|body| protocol::ReportBody {
+                    id: body.id.0,
+                    report: body.report.into(),
+                });
+                Some((Arrival::Report(message), Some(sender)))
             }
-            Arrival::Local(question) => {
-                let (body, received) = self.local.open_as("message", question, local)?;
-                Some((Input::Local(body), ReplyTo::Elsewhere(received)))
+            Raw::Local(question) => {
+                let (message, sender) = self.read_as("message", question, local)?;
+                Some((Arrival::Local(message), Some(sender)))
             }
-            Arrival::Answered(instruction, answer) => {
-                let to = instruction;
-                Some((Input::Answer { to, answer }, ReplyTo::Nobody))
+            Raw::Answered(by, line, seq, answer) => {
+                let answered = Arrival::Answered {
+                    by,
+                    line,
+                    seq,
+                    answer,
+                };
+                Some((answered, None))
             }
-            Arrival::Goal(urgency, sender, asked) => {
-                self.read_goal(urgency, sender.as_deref(), asked)
-            }
-            Arrival::Command(question) => {
+            Raw::Delivered(by, line, seq) => Some((Arrival::Delivered { by, line, seq }, None)),
+            Raw::Goal(urgency, sender, asked) => self.read_goal(urgency, sender.as_deref(), asked),
+            Raw::Command(question) => {
                 let command = question
                     .content("command", USER_LIMIT_BYTES)
                     .and_then(|bytes| wire::command_from_user(&bytes));
                 match command {
-                    Ok(command) => Some((Input::Command(command), ReplyTo::Commander(question))),
+                    Ok(command) => Some((
+                        Arrival::Input(Input::Command(command)),
+                        Some(ReplyTo::Commander(question)),
+                    )),
                     Err(error) => {
                         question.answer(wire::write(&CommandVerdict::new(&Err(error))));
                         None
                     }
                 }
             }
-            Arrival::Facts(asked) => read_facts(asked),
-            Arrival::Observed(executor, payload) => self.read_observed(&executor, &payload, false),
-            Arrival::AllObserved(executor, payload) => {
-                self.read_observed(&executor, &payload, true)
-            }
-            Arrival::WhatHolds(question) => {
+            Raw::Facts(asked) => read_facts(asked),
+            Raw::Observed(executor, payload) => self.read_observed(&executor, &payload, false),
+            Raw::AllObserved(executor, payload) => self.read_observed(&executor, &payload, true),
+            Raw::WhatHolds(question) => {
                 question.answer(wire::write(&self.board.all()));
                 None
             }
-            Arrival::Neighbour(name, epoch, appeared) => {
-                self.neighbour(&name, epoch, appeared);
-                None
-            }
+            Raw::Neighbour(name, epoch, appeared) => self.read_neighbour(&name, epoch, appeared),
             // The driver's own business.
-            Arrival::Look(..) | Arrival::Superseded(_) => None,
+            Raw::Look(..) | Raw::Superseded(_) | Raw::Outdated(..) => None,
         }
     }
 
-    fn read_instruction<L>(&mut self, question: Question) -> Option<(Input<L>, ReplyTo)> {
-        let (body, received) = self.instructions.open("instruction", question)?;
-        let refused = match wire::body::<Instruction>("instruction", body) {
-            // The report has to find its way back.
-            Ok(instruction) => match self.wiring.keys.agent(received.from().as_str()) {
-                Ok(_) => {
-                    let input = Input::Instruction {
-                        from: received.from().clone(),
-                        instruction: instruction.into(),
-                    };
-                    return Some((input, ReplyTo::Superior(received)));
-                }
+    /// A message, whose sender has a name that can be answered. What cannot be read is refused.
+    fn read_message(
+        &self,
+        what: &'static str,
+        question: Question,
+    ) -> Option<(Message<Value>, Question)> {
+        let message = question
+            .content(what, AGENT_LIMIT_BYTES)
+            .and_then(|bytes| wire::read::<Message<Value>>(what, &bytes));
+        let refused = match message {
+            Ok(message) => match self.wiring.keys.agent(message.sender()) {
+                Ok(_) => return Some((message, question)),
                 Err(error) => error.to_string(),
             },
             Err(error) => error.to_string(),
         };
-        // Unlike a report, an instruction can be answered with no. It is dealt with by that, and
-        // what follows it is not held up.
-        tracing::warn!(
-            "an instruction from {} is refused: {refused}",
-            received.from()
-        );
-        let answer = Answer::Rejected { reason: refused };
-        self.instructions.applied(received, Some(answer));
+        tracing::warn!("{refused}");
+        acknowledge(question, &Acknowledgement::refused(None, refused));
         None
+    }
+
+    /// A message, with the content as what `read` makes of it. What makes no sense here is refused,
+    /// and will come again: nothing that a sender says may be lost.
+    fn read_as<B>(
+        &self,
+        what: &'static str,
+        question: Question,
+        read: impl FnOnce(Value) -> Result<B, WireError>,
+    ) -> Option<(Envelope<B>, ReplyTo)> {
+        let (message, question) = self.read_message(what, question)?;
+        let Envelope {
+            from,
+            line,
+            epoch,
+            seq,
+            settled,
+            body,
+        } = Envelope::from(message);
+        match read(body) {
+            Ok(body) => {
+                let envelope = Envelope {
+                    from,
+                    line,
+                    epoch,
+                    seq,
+                    settled,
+                    body,
+                };
+                Some((envelope, ReplyTo::Sender(seq, question)))
+            }
+            Err(error) => {
+                tracing::warn!("from {from}: {error}");
+                acknowledge(question, &Acknowledgement::refused(Some(seq), error));
+                None
+            }
+        }
+    }
+
+    fn read_instruction<L>(&self, question: Question) -> Option<Taken<L>> {
+        let (message, question) = self.read_message("instruction", question)?;
+        let ahead = message.is_ahead();
+        let envelope = Envelope::from(message).map(|body| {
+            let instruction = wire::body::<Instruction>("instruction", body);
+            instruction.map(protocol::Instruction::from)
+        });
+        let sender = (!ahead).then_some(ReplyTo::Sender(envelope.seq, question));
+        match (&envelope.body, ahead) {
+            (Ok(instruction), _) => {
+                let instruction = instruction.clone();
+                let envelope = envelope.map(|_| instruction);
+                let arrival = match ahead {
+                    true => Arrival::StopAhead(envelope),
+                    false => Arrival::Instruction(envelope),
+                };
+                Some((arrival, sender))
+            }
+            (Err(error), false) => {
+                // Unlike a report, an instruction can be answered with no. It is dealt with by that,
+                // and what follows it is not held up.
+                tracing::warn!("an instruction from {} is refused: {error}", envelope.from);
+                let reason = error.to_string();
+                Some((Arrival::Unreadable(envelope.map(|_| reason)), sender))
+            }
+            // Its original follows.
+            (Err(_), true) => None,
+        }
     }
 
     fn read_goal<L>(
@@ -117,7 +184,7 @@ impl Link {
         urgency: Urgency,
         sender: Option<&str>,
         asked: Asked,
-    ) -> Option<(Input<L>, ReplyTo)> {
+    ) -> Option<Taken<L>> {
         let (goal, question) = match asked {
             Asked::Put(payload) => {
                 let goal = bounded(&payload, USER_LIMIT_BYTES)
@@ -133,7 +200,10 @@ impl Link {
         };
         match goal {
             Ok(goal) => match self.admit(sender, &goal) {
-                Ok(()) => Some((Input::Goal(goal.clone()), ReplyTo::User(goal, question))),
+                Ok(()) => Some((
+                    Arrival::Input(Input::Goal(goal.clone())),
+                    Some(ReplyTo::User(goal, question)),
+                )),
                 Err(reason) => {
                     self.tell_user(&Verdict::refused(&goal, reason), question);
                     None
@@ -151,7 +221,7 @@ impl Link {
         executor: &Arc<str>,
         payload: &ZBytes,
         all: bool,
-    ) -> Option<(Input<L>, ReplyTo)> {
+    ) -> Option<Taken<L>> {
         let message = bounded(payload, AGENT_LIMIT_BYTES)
             .and_then(|bytes| wire::read::<Observed>("facts", &bytes));
         let message = match message {
@@ -168,7 +238,7 @@ impl Link {
             reader.published(message, &self.wiring.name)
         };
         match reading {
-            Reading::Take(facts) => Some((Input::Observation(facts), ReplyTo::Nobody)),
+            Reading::Take(facts) => Some(nobody_waits(Input::Observation(facts))),
             Reading::Ignore => None,
             Reading::Missed => {
                 self.ask_what_holds(executor);
@@ -177,23 +247,22 @@ impl Link {
         }
     }
 
-    fn neighbour(&self, name: &str, epoch: u64, appeared: bool) {
-        if !appeared {
-            tracing::info!("{name} (started at {epoch}) is gone");
-            return;
-        }
-        tracing::info!("{name} (started at {epoch}) is there");
+    fn read_neighbour<L>(&mut self, name: &str, epoch: u64, appeared: bool) -> Option<Taken<L>> {
+        let is_there = if appeared { "there" } else { "gone" };
+        tracing::info!("{name} (started at {epoch}) is {is_there}");
         if name == self.wiring.name {
-            tracing::warn!("there are two of {name}: the later one will be listened to");
+            if appeared {
+                tracing::warn!("there are two of {name}: the later one will be listened to");
+            }
+            return None;
         }
-        if self
-            .wiring
-            .executors
-            .iter()
-            .any(|executor| executor == name)
-        {
+        let mut executors = self.wiring.executors.iter();
+        if appeared && executors.any(|executor| executor == name) {
             self.ask_what_holds(&Arc::from(name));
         }
+        let there = self.neighbours.hear(name, epoch, appeared)?;
+        let name = name.into();
+        Some(nobody_waits(Input::Neighbour { name, there }))
     }
 
     fn ask_what_holds(&self, executor: &Arc<str>) {
@@ -203,35 +272,62 @@ impl Link {
         }
     }
 
-    /// Answers whoever waits. A machine that owes a reply and gives none has a fault; whoever waits
-    /// is told so rather than left waiting.
-    pub(crate) fn reply(&mut self, to: ReplyTo, reply: Option<Reply>) {
-        const FAULT: &str = "the agent gave no answer, which is a fault in it";
-        match (to, reply) {
-            (ReplyTo::Nobody, _) => {}
-            (ReplyTo::Executor(received), _) => self.reports.applied(received, None),
-            (ReplyTo::Elsewhere(received), _) => self.local.applied(received, None),
-            (ReplyTo::Superior(received), reply) => {
-                let answer = match reply {
-                    Some(Reply::Instruction(answer)) => Answer::from(&answer),
-                    _ => Answer::Rejected {
-                        reason: FAULT.to_owned(),
-                    },
+    /// Answers whoever waits, for a machine whose memory begins in the epoch `line`.
+    pub(crate) fn respond(&self, to: ReplyTo, response: Response, line: u64) {
+        match (to, response) {
+            (ReplyTo::Sender(_, question), response) => {
+                let answer = match response {
+                    Response::Applied { seq, answer } => {
+                        Acknowledgement::applied(line, seq, answer.as_ref().map(Into::into))
+                    }
+                    Response::Superseded { seq } => Acknowledgement::superseded(seq),
+                    Response::Gap { seq, due } => {
+                        let reason = format_args!("message {due} is due, not {seq}");
+                        Acknowledgement::refused(Some(seq), reason)
+                    }
+                    Response::Goal(_) | Response::Command(_) | Response::Noted => {
+                        Acknowledgement::refused(None, FAULT)
+                    }
                 };
-                self.instructions.applied(received, Some(answer));
+                acknowledge(question, &answer);
             }
-            (ReplyTo::User(goal, question), Some(Reply::Goal(result))) => {
+            (ReplyTo::User(goal, question), Response::Goal(result)) => {
                 self.tell_user(&Verdict::on(&goal, &result), question);
             }
-            (ReplyTo::User(_, question), _) => {
-                let fault = WireError::malformed("answer", FAULT);
-                self.tell_user(&Verdict::unreadable(&fault), question);
+            (ReplyTo::User(goal, question), _) => {
+                self.tell_user(&Verdict::refused(&goal, FAULT.to_owned()), question);
             }
-            (ReplyTo::Commander(question), reply) => {
-                let verdict = match reply {
-                    Some(Reply::Command(result)) => CommandVerdict::new(&result),
+            (ReplyTo::Commander(question), response) => {
+                let verdict = match response {
+                    Response::Command(result) => CommandVerdict::new(&result),
                     _ => CommandVerdict::new(&Err(FAULT)),
                 };
+                question.answer(wire::write(&verdict));
+            }
+            (ReplyTo::Witness(question), _) => {
+                question.answer(wire::write(&FactsVerdict::new(&Ok::<_, WireError>(()))));
+            }
+        }
+    }
+
+    /// Tells whoever waits that nothing is acknowledged, since the journal cannot be written.
+    pub(crate) fn not_written(&self, to: ReplyTo, trouble: &str) {
+        match to {
+            ReplyTo::Sender(seq, question) => {
+                acknowledge(question, &Acknowledgement::refused(Some(seq), trouble));
+            }
+            ReplyTo::User(goal, question) => {
+                self.tell_user(
+                    &Verdict::refused(&goal, not_acknowledged(trouble)),
+                    question,
+                );
+            }
+            ReplyTo::Commander(question) => {
+                let verdict = CommandVerdict::new(&Err(not_acknowledged(trouble)));
+                question.answer(wire::write(&verdict));
+            }
+            ReplyTo::Witness(question) => {
+                let verdict = FactsVerdict::new(&Err::<(), _>(not_acknowledged(trouble)));
                 question.answer(wire::write(&verdict));
             }
         }
@@ -248,23 +344,49 @@ impl Link {
     }
 }
 
-fn read_facts<L>(asked: Asked) -> Option<(Input<L>, ReplyTo)> {
-    let facts = match asked {
+/// A machine that owes a reply and gives none has a fault; whoever waits is told so rather than left
+/// waiting.
+const FAULT: &str = "the agent gave no answer, which is a fault in it";
+
+/// What was asked for has been heard, and may be done.
+fn not_acknowledged(trouble: &str) -> String {
+    format!("{trouble}; it is not acknowledged: it may be done all the same, or forgotten")
+}
+
+fn nobody_waits<L>(input: Input<L>) -> Taken<L> {
+    (Arrival::Input(input), None)
+}
+
+fn acknowledge(question: Question, answer: &Acknowledgement) {
+    question.answer(wire::write(answer));
+}
+
+fn read_facts<L>(asked: Asked) -> Option<Taken<L>> {
+    let (facts, question) = match asked {
         Asked::Put(payload) => {
             let facts =
                 bounded(&payload, USER_LIMIT_BYTES).and_then(|bytes| wire::facts_from_user(&bytes));
-            if let Err(error) = &facts {
-                tracing::warn!("{error}");
-            }
-            facts
+            (facts, None)
         }
         Asked::Query(question) => {
             let facts = question
                 .content("facts", USER_LIMIT_BYTES)
                 .and_then(|bytes| wire::facts_from_user(&bytes));
-            question.answer(wire::write(&FactsVerdict::new(&facts)));
-            facts
+            (facts, Some(question))
         }
     };
-    Some((Input::Observation(facts.ok()?), ReplyTo::Nobody))
+    match (facts, question) {
+        (Ok(facts), question) => Some((
+            Arrival::Input(Input::Observation(facts)),
+            question.map(ReplyTo::Witness),
+        )),
+        (Err(error), None) => {
+            tracing::warn!("{error}");
+            None
+        }
+        (Err(error), Some(question)) => {
+            question.answer(wire::write(&FactsVerdict::new(&Err::<(), _>(error))));
+            None
+        }
+    }
 }

@@ -30,6 +30,12 @@ pub trait Inspect {
         json!([])
     }
 
+    /// All goals that it knows of, with how they stand: those that wait, those that are being seen
+    /// to, and the latest that have ended.
+    fn goals(&self) -> Value {
+        json!([])
+    }
+
     /// What is published at regular intervals, if the wiring asks for it: where everything is.
     fn snapshot(&self) -> Value {
         self.status()
@@ -49,16 +55,22 @@ pub enum View {
     Stack,
     /// [`Inspect::alternatives`].
     Alternatives,
+    /// [`Inspect::goals`]; if the question names one, only that.
+    Goals,
+    /// Where and how well what it knows is written down; nothing without a journal.
+    Journal,
 }
 
 impl View {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 7] = [
         Self::Status,
         Self::Belief,
         Self::Plans,
         Self::Stack,
         Self::Alternatives,
+        Self::Goals,
+        Self::Journal,
     ];
 
     /// As it stands in the key.
@@ -69,6 +81,8 @@ impl View {
             Self::Plans => "plans",
             Self::Stack => "stack",
             Self::Alternatives => "alternatives",
+            Self::Goals => "goals",
+            Self::Journal => "journal",
         }
     }
 
@@ -80,6 +94,9 @@ impl View {
             Self::Plans => machine.plans(),
             Self::Stack => machine.stack(),
             Self::Alternatives => machine.alternatives(),
+            Self::Goals => machine.goals(),
+            // No machine knows of its journal.
+            Self::Journal => json!({}),
         }
     }
 }

@@ -1,9 +1,9 @@
 //! What an agent shows of itself, at whatever level it is.
 
-use agent_core::agent::{Agent, Goal, Intention, ResumedBy, WaitsFor};
+use agent_core::agent::{Agent, Ended, Goal, Intention, ResumedBy, WaitsFor};
 use agent_core::model::{Atom, Domain, Symbol};
 use agent_core::planner::{Plan, Planner};
-use agent_core::protocol::Urgency;
+use agent_core::protocol::{Report, Urgency};
 use serde_json::{Value, json};
 
 use crate::inspect::Inspect;
@@ -64,6 +64,25 @@ impl<P: Planner> Inspect for Agent<P> {
         }
     }
 
+    fn goals(&self) -> Value {
+        let running = self.running().map(|running| &running.goal);
+        let stack = self.stack().entries().iter();
+        let suspended = stack.rev().map(|entry| &entry.intention.goal);
+        let waiting = self.waiting().intentions().iter().map(|i| &i.goal);
+        let aside = self.aside().goals().iter().map(|(i, _)| &i.goal);
+        let live = std::iter::empty()
+            .chain(running.map(|goal| (goal, "running")))
+            .chain(suspended.map(|goal| (goal, "suspended")))
+            .chain(waiting.map(|goal| (goal, "waiting")))
+            .chain(aside.map(|goal| (goal, "aside")))
+            .map(|(shown, state)| {
+                let mut shown = goal(shown);
+                shown["state"] = json!(state);
+                shown
+            });
+        live.chain(self.ended().rev().map(ended)).collect()
+    }
+
     fn alternatives(&self) -> Value {
         alternatives(self)
     }
@@ -106,6 +125,29 @@ pub(crate) fn goal(goal: &Goal) -> Value {
         shown["deadline_s"] = json!(deadline.secs());
     }
     if let Some((superior, _)) = &goal.superior {
+        shown["superior"] = json!(superior.as_str());
+    }
+    shown
+}
+
+fn ended(ended: &Ended) -> Value {
+    let (outcome, reason) = match &ended.outcome {
+        Report::Success { .. } => ("succeeded", None),
+        Report::Failure { reason, .. } => ("failed", Some(reason)),
+        Report::Unknown { reason, .. } => ("unknown", Some(reason)),
+        Report::Started | Report::Progress { .. } | Report::Suspended { .. } => ("unknown", None),
+    };
+    let mut shown = json!({
+        "id": ended.id.as_str(),
+        "tasks": texts(&ended.tasks),
+        "state": "ended",
+        "outcome": outcome,
+        "at_s": ended.at.secs(),
+    });
+    if let Some(reason) = reason {
+        shown["reason"] = json!(reason);
+    }
+    if let Some((superior, _)) = &ended.superior {
         shown["superior"] = json!(superior.as_str());
     }
     shown

@@ -6,8 +6,8 @@
 //!
 //! ```no_run
 //! use std::time::Duration;
-//! use agent_link::{Clock, Inspect, Keys, Wiring, drive_agent, interrupted, runtime, session};
-//! use agent_core::protocol::{Input, Machine, Output, Reply};
+//! use agent_link::{Clock, Inspect, Keys, Wiring, drive_agent, epoch_now, interrupted, runtime, session};
+//! use agent_core::protocol::{Durable, Input, Machine, Output, Reply, Row, Rows, Unreadable};
 //! # use agent_core::model::Time;
 //! # struct Child;
 //! # impl Inspect for Child {}
@@ -18,6 +18,10 @@
 //! #     fn poll_output(&mut self) -> Option<Output<Self::Out>> { None }
 //! #     fn wake_at(&self) -> Option<Time> { None }
 //! # }
+//! # impl Durable for Child {
+//! #     fn write_down(&mut self) -> Vec<Row> { Vec::new() }
+//! #     fn recall(&mut self, _: &Rows) -> Result<(), Unreadable> { Ok(()) }
+//! # }
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! runtime()?.block_on(async {
 //!     let connect = vec!["tcp/127.0.0.1:7447".to_owned()];
@@ -26,9 +30,9 @@
 //!     let clock = Clock::of_world(&session, &keys, Duration::from_secs(10)).await?;
 //!     let wiring = Wiring {
 //!         executors: vec!["executor".to_owned()],
-//!         ..Wiring::new(&keys, "child")
+//!         ..Wiring::new(&keys, "child", epoch_now())
 //!     };
-//!     drive_agent(Child, wiring, &session, clock, interrupted()).await?;
+//!     drive_agent(Child, None, wiring, &session, clock, interrupted()).await?;
 //!     session::close(session).await;
 //!     Ok::<(), Box<dyn std::error::Error>>(())
 //! })
@@ -49,7 +53,9 @@
 //!   so often; emergencies have a rate for each sender and one for all. Whoever asks too much is told.
 //! - Nothing but a router listens, and a router only on this machine, unless told otherwise.
 //!
-//! Nothing here is durable yet: what was accepted is forgotten when the process ends.
+//! - With a journal, nothing that depends on what was not written down leaves the process, save what
+//!   stops something; so a process that is started again is to its neighbours as one that was slow.
+//!   Without one, what was accepted is forgotten when the process ends.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod channel;
@@ -65,6 +71,7 @@ mod keys;
 mod limit_options;
 mod link;
 mod mailbox;
+mod neighbours;
 pub mod options;
 mod process;
 mod publisher;
@@ -76,15 +83,16 @@ mod role;
 pub mod session;
 pub mod wire;
 mod wiring;
+mod writer;
 
 pub use agent_journal as journal;
 pub use client::{Client, ClientError, Events};
 pub use clock::{Clock, ClockError, ClockService, epoch_now};
-pub use driver::{drive, drive_agent};
+pub use driver::{Memory, drive, drive_agent};
 pub use inspect::{Inspect, View};
 pub use keys::{AgentKeys, Keys, NameError};
 pub use process::{interrupted, runtime, stdin_ended};
 pub use quota::{Limits, Rate};
 pub use role::{RoleError, drive_agent_in_world, drive_in_world, log_to_stderr, run_role};
 pub use session::Session;
-pub use wiring::{LinkError, Wiring};
+pub use wiring::{LinkError, Wiring, next_epoch};

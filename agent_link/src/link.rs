@@ -5,19 +5,23 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use agent_core::model::{Symbol, Time};
-use agent_core::protocol::{self, GoalRequest, Output, Urgency};
-use serde::Serialize;
+use agent_core::protocol::{Effect, GoalRequest, Urgency};
 use serde_json::{Value, json};
 use zenoh::Session;
 
-use crate::channel::{Delivery, Receiver, Sender};
+use crate::channel::{Delivery, Sender, send_ahead};
 use crate::facts::{Board, Reader};
+use crate::incoming::ReplyTo;
 use crate::inspect::{Inspect, View};
 use crate::mailbox::{Arrival, Mailbox};
+use crate::neighbours::Neighbours;
 use crate::publisher::Publisher;
+use crate::question::Question;
 use crate::queue::Arrivals;
 use crate::quota::Quota;
-use crate::wire::{self, Answer, Instruction, ReportBody, Text, VERSION, WireError};
+use crate::wire::{
+    self, Acknowledgement, EventNumber, Instruction, Message, ReportBody, Text, VERSION, WireError,
+};
 use crate::wiring::{LinkError, Wiring};
 
 /// All that one machine is connected by.
@@ -26,12 +30,12 @@ pub(crate) struct Link {
     session: Session,
     pub(crate) mailbox: Mailbox,
     pub(crate) publisher: Publisher,
-    pub(crate) instructions: Receiver,
-    pub(crate) reports: Receiver,
-    pub(crate) local: Receiver,
-    to_executors: BTreeMap<Symbol, Sender<Instruction>>,
-    to_superiors: BTreeMap<Symbol, Sender<ReportBody>>,
-    to_elsewhere: Option<Sender<Value>>,
+    to_executors: BTreeMap<Symbol, Sender>,
+    to_superiors: BTreeMap<Symbol, Sender>,
+    to_elsewhere: Option<Sender>,
+    pub(crate) neighbours: Neighbours,
+    /// Why the journal cannot be written at present.
+    pub(crate) trouble: Option<String>,
     pub(crate) board: Board,
     pub(crate) readers: BTreeMap<Arc<str>, Reader>,
     quota: Quota,
@@ -48,9 +52,8 @@ impl Link {
             session: session.clone(),
             mailbox,
             publisher: Publisher::new(session),
-            instructions: Receiver::default(),
-            reports: Receiver::default(),
-            local: Receiver::default(),
+            neighbours: Neighbours::default(),
+            trouble: None,
             to_executors: BTreeMap::new(),
             to_superiors: BTreeMap::new(),
             to_elsewhere: None,
@@ -75,6 +78,10 @@ impl Link {
 
     /// Whether a goal of a user's may reach the machine, and else why not.
     pub(crate) fn admit(&mut self, sender: Option<&str>, goal: &GoalRequest) -> Result<(), String> {
+        if let Some(trouble) = &self.trouble {
+            // What cannot be written down is not promised.
+            return Err(trouble.clone());
+        }
         match goal.urgency {
             // Those that wait are counted by the machine.
             Urgency::Normal => Ok(()),
@@ -85,81 +92,99 @@ impl Link {
         }
     }
 
-    /// A sender to `key`; `answered` says what arrives when a message was applied.
-    fn sender<T: Clone + Serialize + Send + Sync + 'static>(
+    /// A sender to `key`; `applied` says what arrives when a message was.
+    fn sender(
         &self,
         key: String,
-        answered: impl Fn(T, Option<Answer>) -> Option<Arrival> + Send + 'static,
-    ) -> Sender<T> {
+        applied: impl Fn(u64, Acknowledgement) -> Option<Arrival> + Send + 'static,
+    ) -> Sender {
         let receiver = key.clone();
         let deliver = move |delivery| match delivery {
-            Delivery::Applied(body, answer) => answered(body, answer),
+            Delivery::Applied(seq, answer) => applied(seq, answer),
             Delivery::Superseded => Some(Arrival::Superseded(receiver.clone())),
         };
-        let from = self.wiring.name.as_str().into();
-        let arrivals = self.mailbox.arrivals();
-        Sender::spawn(
-            &self.session,
-            key,
-            from,
-            self.wiring.epoch,
-            arrivals,
-            deliver,
-        )
+        Sender::spawn(&self.session, key, self.mailbox.arrivals(), deliver)
     }
 
-    /// Sends what a machine has decided. Never waits.
+    /// A sender of instructions to an executor.
+    fn to_executor(&self, name: &Symbol, key: String) -> Sender {
+        let (by, receiver) = (name.clone(), key.clone());
+        self.sender(key, move |seq, acknowledgement| {
+            let line = acknowledgement.line.unwrap_or_default();
+            Some(match acknowledgement.answer {
+                Some(answer) => Arrival::Answered(by.clone(), line, seq, answer.into()),
+                None => Arrival::Outdated(receiver.clone(), seq),
+            })
+        })
+    }
+
+    /// A sender of reports to a superior.
+    fn to_superior(&self, name: &Symbol, key: String) -> Sender {
+        let by = name.clone();
+        self.sender(key, move |seq, acknowledgement| {
+            let line = acknowledgement.line.unwrap_or_default();
+            Some(Arrival::Delivered(by.clone(), line, seq))
+        })
+    }
+
+    /// Sends what may go out, for a machine whose memory begins in the epoch `line`. Never waits.
     pub(crate) fn send<L>(
         &mut self,
-        output: Output<L>,
+        line: u64,
+        effect: Effect<L, ReplyTo>,
         local_as_value: fn(&L) -> Result<Value, WireError>,
     ) -> Result<(), LinkError> {
-        match output {
-            Output::Instruct { to, instruction } => {
+        match effect {
+            Effect::Instruct { to, message } => {
                 if !self.to_executors.contains_key(&to) {
                     let key = self.wiring.keys.agent(to.as_str())?.instruction();
-                    let sender = self.sender(key, |instruction: Instruction, answer| {
-                        let instruction: protocol::Instruction = instruction.into();
-                        match answer {
-                            Some(answer) => Some(Arrival::Answered(instruction, answer.into())),
-                            None => {
-                                tracing::error!("{instruction:?} was applied without an answer");
-                                None
-                            }
-                        }
-                    });
+                    let sender = self.to_executor(&to, key);
                     self.to_executors.insert(to.clone(), sender);
                 }
                 if let Some(sender) = self.to_executors.get(&to) {
-                    sender.send(Instruction::from(&instruction));
+                    let message = message.map(|body| Instruction::from(&body));
+                    sender.send(message.seq, wire::write(&Message::from(&message))?);
                 }
             }
-            Output::Report { to, id, report } => {
+            Effect::StopAhead { to, message } => {
+                let key = self.wiring.keys.agent(to.as_str())?.instruction();
+                let message = message.map(|body| Instruction::from(&body));
+                let text = wire::write(&Message::from(&message).ahead())?;
+                send_ahead(&self.session, key, text);
+            }
+            Effect::Report { to, message } => {
                 if !self.to_superiors.contains_key(&to) {
                     let key = self.wiring.keys.agent(to.as_str())?.report();
-                    let sender = self.sender(key, |_, _| None);
+                    let sender = self.to_superior(&to, key);
                     self.to_superiors.insert(to.clone(), sender);
                 }
                 if let Some(sender) = self.to_superiors.get(&to) {
-                    sender.send(ReportBody {
-                        id: Text(id),
-                        report: (&report).into(),
+                    let message = message.map(|body| ReportBody {
+                        id: Text(body.id),
+                        report: (&body.report).into(),
                     });
+                    sender.send(message.seq, wire::write(&Message::from(&message))?);
                 }
             }
-            Output::Observed { facts, reported_to } => {
+            Effect::Observed { facts, reported_to } => {
                 let message = self.board.tell(&facts, reported_to.as_ref());
                 let key = self.wiring.keys.agent(&self.wiring.name)?.facts();
                 self.publisher.urgent(key, wire::write(&message)?);
             }
-            Output::Event(event) => {
-                let line = wire::event_to_line(&self.wiring.name, &event)?;
+            Effect::Event { number, event } => {
+                let number = EventNumber { line, n: number };
+                let line = wire::numbered_event_to_line(&self.wiring.name, Some(number), &event)?;
                 self.publisher.put(self.wiring.keys.event(), line);
             }
-            Output::Local(local) => match &self.to_elsewhere {
-                Some(sender) => sender.send(local_as_value(&local)?),
+            Effect::Local(message) => match &self.to_elsewhere {
+                Some(sender) => {
+                    let body = local_as_value(&message.body)?;
+                    let message = message.map(|_| body);
+                    sender.send(message.seq, wire::write(&Message::from(&message))?);
+                }
                 None => tracing::error!("the wiring has no way out for what the machine says"),
             },
+            Effect::Respond { to, response, line } => self.respond(to, response, line),
         }
         Ok(())
     }
@@ -173,10 +198,37 @@ impl Link {
             .latest(self.wiring.keys.world_pose(), message.to_string());
     }
 
-    /// One of the views into the machine, for whoever asked.
-    pub(crate) fn view(&self, view: View, machine: &impl Inspect) -> Result<String, WireError> {
-        wire::write(&json!({
-            "v": VERSION, "agent": self.wiring.name, view.name(): view.of(machine),
-        }))
+    /// Answers with one of the views into the machine. `journal`: what there is to say of that.
+    pub(crate) fn show(
+        &self,
+        view: View,
+        question: Question,
+        machine: &impl Inspect,
+        journal: Option<Value>,
+    ) {
+        let mut shown = match view {
+            View::Journal => journal.unwrap_or_else(|| json!({})),
+            View::Goals => asked_for(view.of(machine), question.text()),
+            view => view.of(machine),
+        };
+        if let (View::Status, Some(trouble), Value::Object(status)) =
+            (view, &self.trouble, &mut shown)
+        {
+            status.insert("journal_trouble".to_owned(), json!(trouble));
+        }
+        question.answer(wire::write(&json!({
+            "v": VERSION, "agent": self.wiring.name, view.name(): shown,
+        })));
+    }
+}
+
+/// Of the goals that one; all of them if none is named.
+fn asked_for(goals: Value, id: Option<String>) -> Value {
+    match (goals, id) {
+        (Value::Array(goals), Some(id)) => {
+            let goals = goals.into_iter();
+            goals.filter(|goal| goal["id"] == id.as_str()).collect()
+        }
+        (goals, _) => goals,
     }
 }

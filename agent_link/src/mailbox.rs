@@ -7,7 +7,8 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use agent_core::protocol::{Answer, Instruction, Urgency};
+use agent_core::model::Symbol;
+use agent_core::protocol::{Answer, Urgency};
 use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 use zenoh::Session;
@@ -57,8 +58,13 @@ pub(crate) enum Arrival {
     AllObserved(Arc<str>, ZBytes),
     /// Somebody has appeared (`true`) or vanished, in this epoch.
     Neighbour(String, u64, bool),
-    /// An executor has answered.
-    Answered(Instruction, Answer),
+    /// This executor, of that line, has applied the instruction of that number, with this answer.
+    Answered(Symbol, u64, u64, Answer),
+    /// This superior, of that line, has applied the report of that number.
+    Delivered(Symbol, u64, u64),
+    /// The receiver on this key has dealt with the message of that number long since, though this
+    /// machine does not know.
+    Outdated(String, u64),
     /// The receiver on this key listens to a later start of this machine.
     Superseded(String),
 }

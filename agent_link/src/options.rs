@@ -5,12 +5,15 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use agent_core::planner::{AnyPlanner, Depth, PlannerKind, Settings};
+use agent_journal::{Identity, Journal};
 use clap::Args;
 use zenoh::Session;
 
+use crate::driver::Memory;
 use crate::keys::{Keys, NameError};
 pub use crate::limit_options::{LimitOptions, RateOption};
 use crate::process::{interrupted, stdin_ended};
+use crate::role::RoleError;
 use crate::session::{self, Role, SessionError};
 
 /// The robot that is meant unless one is named.
@@ -31,6 +34,10 @@ pub struct LinkOptions {
     /// Zenoh settings (JSON5) for TLS, passwords, access control.
     #[arg(long, value_name = "FILE")]
     pub zenoh_config: Option<PathBuf>,
+    /// Remember in DIR/<robot>/ what must not be lost, and go on from there. Without it, everything
+    /// is forgotten when the role ends.
+    #[arg(long, value_name = "DIR")]
+    pub state: Option<PathBuf>,
     /// End when the standard input ends: whoever started this role is gone then.
     #[arg(long, hide = true)]
     pub until_stdin_ends: bool,
@@ -40,6 +47,41 @@ impl LinkOptions {
     /// The keys of the robot.
     pub fn keys(&self) -> Result<Keys, NameError> {
         Keys::new(&self.robot)
+    }
+
+    /// What the role of that name has written down, in a place of that fingerprint: in
+    /// `DIR/<robot>/<role>.redb`, which is made if it is not there. `None` without `--state`.
+    ///
+    /// # Errors
+    /// If that is not its journal, is damaged, or is in use.
+    pub fn memory(&self, role: &str, place: &str) -> Result<Memory, RoleError> {
+        self.keys()?.agent(role)?;
+        let Some(path) = self.state_file(&format!("{role}.redb"))? else {
+            return Ok(None);
+        };
+        let whose = Identity {
+            robot: self.robot.clone(),
+            role: role.to_owned(),
+            place: place.to_owned(),
+        };
+        Ok(Some(Journal::open(&path, whose)?))
+    }
+
+    /// The file of that name in `DIR/<robot>/`; `None` without `--state`.
+    ///
+    /// # Errors
+    /// If the names would lead elsewhere.
+    pub fn state_file(&self, name: &str) -> Result<Option<PathBuf>, NameError> {
+        let Some(directory) = &self.state else {
+            return Ok(None);
+        };
+        self.keys()?;
+        for part in [&self.robot, name] {
+            if part.starts_with('.') {
+                return Err(NameError::NotAName(part.to_owned()));
+            }
+        }
+        Ok(Some(directory.join(&self.robot).join(name)))
     }
 
     /// A session with the robot's other roles.

@@ -7,7 +7,7 @@ use tokio::runtime::Handle;
 use zenoh::bytes::ZBytes;
 use zenoh::query::Query;
 
-use crate::wire::WireError;
+use crate::wire::{self, WireError};
 
 /// A query, and the key under which it is answered.
 ///
@@ -39,6 +39,13 @@ impl Question {
             Some(payload) => bounded(payload, limit_bytes),
             None => Err(WireError::malformed(what, "the query has no content")),
         }
+    }
+
+    /// What came with it, as text; `None` if that is nothing or no short text.
+    pub fn text(&self) -> Option<String> {
+        let content = self.content("question", wire::USER_LIMIT_BYTES).ok()?;
+        let text = std::str::from_utf8(&content).ok()?.trim();
+        (!text.is_empty()).then(|| text.to_owned())
     }
 
     /// Sends the answer, soon. One that cannot be written is our mistake and leaves the question

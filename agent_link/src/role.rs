@@ -7,12 +7,13 @@ use std::pin::Pin;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use agent_core::protocol::Machine;
+use agent_core::protocol::Durable;
+use agent_journal::JournalError;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::clock::{Clock, ClockError};
-use crate::driver::{drive, drive_agent};
+use crate::driver::{Memory, drive, drive_agent};
 use crate::inspect::Inspect;
 use crate::keys::NameError;
 use crate::options::LinkOptions;
@@ -41,6 +42,9 @@ pub enum RoleError {
     /// No world, or not at this speed.
     #[error(transparent)]
     Clock(#[from] ClockError),
+    /// What it has written down.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     /// It could not go on.
     #[error(transparent)]
     Link(#[from] LinkError),
@@ -81,14 +85,15 @@ pub fn log_to_stderr() {
 /// If there is no connection, no world, or another process of this name.
 pub async fn drive_agent_in_world<M>(
     agent: M,
+    memory: Memory,
     wiring: Wiring,
     options: &LinkOptions,
 ) -> Result<(), RoleError>
 where
-    M: Machine<In = Infallible, Out = Infallible> + Inspect,
+    M: Durable<In = Infallible, Out = Infallible> + Inspect,
 {
     in_world(options, wiring, async |wiring, session, clock, shutdown| {
-        drive_agent(agent, wiring, session, clock, shutdown).await?;
+        drive_agent(agent, memory, wiring, session, clock, shutdown).await?;
         Ok(())
     })
     .await
@@ -100,16 +105,17 @@ where
 /// If there is no connection, no world, or another process of this name.
 pub async fn drive_in_world<M>(
     machine: M,
+    memory: Memory,
     wiring: Wiring,
     options: &LinkOptions,
 ) -> Result<(), RoleError>
 where
-    M: Machine + Inspect,
+    M: Durable + Inspect,
     M::In: DeserializeOwned,
-    M::Out: Serialize,
+    M::Out: Serialize + Clone,
 {
     in_world(options, wiring, async |wiring, session, clock, shutdown| {
-        drive(machine, wiring, session, clock, shutdown).await?;
+        drive(machine, memory, wiring, session, clock, shutdown).await?;
         Ok(())
     })
     .await

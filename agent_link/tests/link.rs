@@ -143,7 +143,8 @@ async fn a_bad_instruction_is_refused_and_the_next_one_is_taken() {
     let session = robot.client().await;
     let key = robot.keys.agent("executor").unwrap().instruction();
     let envelope = |v: u32, epoch: u64, seq: u64, body: Value| {
-        json!({"v": v, "from": "child", "epoch": epoch, "seq": seq, "body": body}).to_string()
+        json!({"v": v, "from": "child", "line": epoch, "epoch": epoch, "seq": seq, "body": body})
+            .to_string()
     };
     let suspend = json!({"verb": "suspend", "id": "child.5.1"});
     let not_an_action = json!({"verb": "execute", "id": "child.5.1", "action": "go"});
@@ -168,8 +169,10 @@ async fn a_bad_instruction_is_refused_and_the_next_one_is_taken() {
         assert!(answer.contains(words), "{sent}: {answer}");
     }
     let executor = executor.stop().await.unwrap();
-    // The repeated one was applied once.
-    assert_eq!(executor.seen.len(), 2, "{:?}", executor.seen);
+    // The repeated one was applied once, and that the sender has begun anew was noticed.
+    let reborn = |input: &&Input<Value>| matches!(input, Input::Reborn { .. });
+    assert_eq!(executor.seen.iter().filter(reborn).count(), 1);
+    assert_eq!(executor.seen.len(), 3, "{:?}", executor.seen);
     agent_link::session::close(session).await;
     robot.stop().await;
 }

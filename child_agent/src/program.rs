@@ -2,7 +2,7 @@
 
 use agent_core::agent::Agent;
 use agent_link::options::{LinkOptions, PlaceOptions, PlannerOptions};
-use agent_link::{RoleError, Wiring, drive_agent_in_world};
+use agent_link::{RoleError, Wiring, drive_agent_in_world, next_epoch};
 use clap::Args;
 use maps::{NotInOrder, Place};
 
@@ -46,10 +46,12 @@ pub enum ProgramError {
 pub async fn run(args: ChildArgs) -> Result<(), ProgramError> {
     let place = Place::open(args.place.place.as_deref())?;
     let keys = args.link.keys().map_err(RoleError::from)?;
+    let memory = args.link.memory(&args.name, place.fingerprint())?;
+    let epoch = next_epoch(&memory).map_err(RoleError::from)?;
     let wiring = Wiring {
         executors: vec![args.executor.clone()],
         takes_facts: true,
-        ..Wiring::new(&keys, &args.name)
+        ..Wiring::new(&keys, &args.name, epoch)
     };
     let configuration = crate::configuration(
         place.site(),
@@ -57,9 +59,9 @@ pub async fn run(args: ChildArgs) -> Result<(), ProgramError> {
         &args.place.start,
         &args.executor,
         &args.name,
-        wiring.epoch,
+        epoch,
     )?;
     let agent = Agent::new(configuration, args.planner.make());
-    drive_agent_in_world(agent, wiring, &args.link).await?;
+    drive_agent_in_world(agent, memory, wiring, &args.link).await?;
     Ok(())
 }

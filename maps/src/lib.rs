@@ -3,6 +3,7 @@
 mod domain;
 mod execution_model;
 mod finding;
+mod fingerprint;
 mod levels;
 pub mod museum;
 mod place;

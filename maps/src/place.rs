@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use agent_core::model::Map;
 
+use crate::fingerprint::fingerprint;
 use crate::vocabulary::missing_words;
 use crate::{Finding, Level, Site, area_level, level_from_texts, museum, node_level, read_level};
 
@@ -26,6 +27,7 @@ fn lines(findings: &[Finding]) -> String {
 #[derive(Clone, Debug)]
 pub struct Place {
     name: String,
+    fingerprint: String,
     site: Arc<Site>,
     area: Level,
     node: Level,
@@ -40,12 +42,22 @@ impl Place {
     pub fn read(dir: impl AsRef<Path>) -> Result<Self, Vec<Finding>> {
         let dir = dir.as_ref();
         let name = dir.file_name().map(|name| name.to_string_lossy());
+        let files = [
+            "map.geojson",
+            "area.hddl",
+            "area.toml",
+            "node.hddl",
+            "node.toml",
+        ];
+        // What cannot be read is a finding below.
+        let texts = files.map(|file| std::fs::read(dir.join(file)).unwrap_or_default());
         let domains = ["area", "node"].map(|level| {
             let file = dir.join(format!("{level}.hddl"));
             file.display().to_string()
         });
         Self::from_parts(
             name.unwrap_or_default().as_ref(),
+            fingerprint(&texts.each_ref().map(Vec::as_slice)),
             Site::read(dir.join("map.geojson")),
             ["area", "node"].map(|level| read_level(dir, level)),
             domains.each_ref().map(String::as_str),
@@ -80,11 +92,21 @@ impl Place {
         ];
         let site = Site::from_text("map.geojson", museum::MAP);
         // The texts do not change once the program is built, and a test reads them.
-        Self::from_parts("museum", site, levels, names).expect("the museum is in order")
+        let texts = [
+            museum::MAP,
+            museum::AREA_DOMAIN,
+            museum::AREA_MODEL,
+            museum::NODE_DOMAIN,
+            museum::NODE_MODEL,
+        ];
+        let fingerprint = fingerprint(&texts.map(str::as_bytes));
+        Self::from_parts("museum", fingerprint, site, levels, names)
+            .expect("the museum is in order")
     }
 
     fn from_parts(
         name: &str,
+        fingerprint: String,
         site: Result<Site, Vec<Finding>>,
         [area, node]: [Result<Level, Vec<Finding>>; 2],
         [area_file, node_file]: [&str; 2],
@@ -105,6 +127,7 @@ impl Place {
                     site.name()
                 }
                 .to_owned(),
+                fingerprint,
                 site: Arc::new(site),
                 area,
                 node,
@@ -120,6 +143,12 @@ impl Place {
     /// What the map calls it; if that is nothing, what its folder is called.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Of the texts that it was read from: what was written down in one place makes no sense in
+    /// another.
+    pub fn fingerprint(&self) -> &str {
+        &self.fingerprint
     }
 
     /// Its map.
@@ -177,6 +206,7 @@ mod tests {
     fn museum_with(area_domain: &str, node_domain: &str) -> Result<Place, Vec<Finding>> {
         Place::from_parts(
             "copy",
+            String::new(),
             Site::from_text("map.geojson", museum::MAP),
             [
                 level_from_texts(area_domain, museum::AREA_MODEL, ["area.hddl", "area.toml"]),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use agent_core::agent::Agent;
 use agent_core::model::Symbol;
 use agent_link::options::{LimitOptions, LinkOptions, PlaceOptions, PlannerOptions};
-use agent_link::{RoleError, Wiring, drive_agent_in_world};
+use agent_link::{RoleError, Wiring, drive_agent_in_world, next_epoch};
 use clap::Args;
 use maps::{NotInOrder, Place};
 
@@ -51,14 +51,15 @@ pub enum ProgramError {
 pub async fn run(args: ParentArgs) -> Result<(), ProgramError> {
     let place = Place::open(args.place.place.as_deref())?;
     let keys = args.link.keys().map_err(RoleError::from)?;
-    let wiring = Wiring::new(&keys, crate::NAME);
+    let memory = args.link.memory(crate::NAME, place.fingerprint())?;
+    let epoch = next_epoch(&memory).map_err(RoleError::from)?;
     let mut configuration = crate::configuration(
         place.site(),
         place.area(),
         &args.place.start,
         &args.child,
         BTreeMap::from_iter(args.wing),
-        wiring.epoch,
+        epoch,
     )?;
     configuration.policy.most_waiting = args.limits.most_waiting;
     let executors = configuration.executors.all();
@@ -67,10 +68,10 @@ pub async fn run(args: ParentArgs) -> Result<(), ProgramError> {
         takes_goals: true,
         limits: args.limits.limits(),
         takes_facts: true,
-        ..wiring
+        ..Wiring::new(&keys, crate::NAME, epoch)
     };
     let agent = Agent::new(configuration, args.planner.make());
-    drive_agent_in_world(agent, wiring, &args.link).await?;
+    drive_agent_in_world(agent, memory, wiring, &args.link).await?;
     Ok(())
 }
 

@@ -25,6 +25,28 @@ pub struct Envelope<T> {
     pub body: T,
 }
 
+impl<T> Envelope<T> {
+    /// The same message in other words.
+    pub fn map<U>(self, words: impl FnOnce(T) -> U) -> Envelope<U> {
+        let Self {
+            from,
+            line,
+            epoch,
+            seq,
+            settled,
+            body,
+        } = self;
+        Envelope {
+            from,
+            line,
+            epoch,
+            seq,
+            settled,
+            body: words(body),
+        }
+    }
+}
+
 /// What is to be sent to one receiver and is not acknowledged yet, oldest first.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct Outbox<T> {

@@ -14,4 +14,4 @@ pub use event::{Event, Happening, Resumption};
 pub use goal::{Command, GoalId, GoalRequest, Rejection, Urgency};
 pub use instruction::{ActionId, Answer, Instruction, Report, ReportBody};
 pub use machine::{Input, Machine, Output, Reply};
-pub use station::{Arrival, Effect, Response, Station};
+pub use station::{Arrival, Effect, Response, Station, last_epoch};

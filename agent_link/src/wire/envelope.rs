@@ -15,7 +15,31 @@ pub struct Message<T> {
     seq: u64,
     #[serde(default)]
     settled: u64,
+    /// A copy that runs ahead of its number: an instruction to stop.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    ahead: bool,
     body: T,
+}
+
+impl<T> Message<T> {
+    /// The same, as a copy that runs ahead of its number.
+    #[must_use]
+    pub fn ahead(self) -> Self {
+        Self {
+            ahead: true,
+            ..self
+        }
+    }
+
+    /// Who sends.
+    pub fn sender(&self) -> &str {
+        &self.from
+    }
+
+    /// Whether it runs ahead of its number.
+    pub fn is_ahead(&self) -> bool {
+        self.ahead
+    }
 }
 
 impl<T: Clone> From<&Envelope<T>> for Message<T> {
@@ -27,6 +51,7 @@ impl<T: Clone> From<&Envelope<T>> for Message<T> {
             epoch: envelope.epoch,
             seq: envelope.seq,
             settled: envelope.settled,
+            ahead: false,
             body: envelope.body.clone(),
         }
     }
@@ -53,6 +78,9 @@ pub struct Acknowledgement {
     /// The message it is about; `None` if that could not be read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seq: Option<u64>,
+    /// The epoch in which the receiver's memory begins: another than before says that it has lost it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line: Option<u64>,
     /// To an instruction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub answer: Option<Answer>,
@@ -72,11 +100,12 @@ pub struct Refusal {
 }
 
 impl Acknowledgement {
-    /// It was applied; to an instruction with this answer.
-    pub fn applied(seq: u64, answer: Option<Answer>) -> Self {
+    /// It was applied by a receiver of that line; to an instruction with this answer.
+    pub fn applied(line: u64, seq: u64, answer: Option<Answer>) -> Self {
         Self {
             v: VERSION,
             seq: Some(seq),
+            line: Some(line),
             answer,
             refused: None,
         }
@@ -87,6 +116,7 @@ impl Acknowledgement {
         Self {
             v: VERSION,
             seq,
+            line: None,
             answer: None,
             refused: Some(Refusal {
                 reason: reason.to_string(),
@@ -100,6 +130,7 @@ impl Acknowledgement {
         Self {
             v: VERSION,
             seq: Some(seq),
+            line: None,
             answer: None,
             refused: Some(Refusal {
                 reason: "a later start of the same sender has been heard from".to_owned(),

@@ -13,6 +13,8 @@ struct Line {
     v: u32,
     t_s: f64,
     agent: String,
+    #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
+    number: Option<EventNumber>,
     /// `null` where the event is about no goal.
     #[serde(default)]
     goal: Option<String>,
@@ -115,12 +117,31 @@ enum ResumptionWord {
     Replanned,
 }
 
-/// The line that is published for an event of `agent`, without a line break.
+/// Which of an agent's events it is. One that is told again, after a restart, has the same number.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, Ord, PartialOrd, Serialize, Deserialize)]
+pub struct EventNumber {
+    /// The epoch in which the agent's memory, and its counting, begins.
+    pub line: u64,
+    /// Counts from 1.
+    pub n: u64,
+}
+
+/// An event of `agent` as a line, without a line break.
 pub fn event_to_line(agent: &str, event: &Event) -> Result<String, WireError> {
+    numbered_event_to_line(agent, None, event)
+}
+
+/// The line that is published for an event of `agent`, without a line break.
+pub fn numbered_event_to_line(
+    agent: &str,
+    number: Option<EventNumber>,
+    event: &Event,
+) -> Result<String, WireError> {
     super::write(&Line {
         v: VERSION,
         t_s: event.at.secs(),
         agent: agent.to_owned(),
+        number,
         goal: event.goal.as_ref().map(ToString::to_string),
         stack_depth: event.stack_depth,
         what: to_wire(&event.what),
@@ -129,14 +150,23 @@ pub fn event_to_line(agent: &str, event: &Event) -> Result<String, WireError> {
 
 /// The agent and the event that a line tells of.
 pub fn event_from_line(line: &[u8]) -> Result<(Symbol, Event), WireError> {
+    let (agent, _, event) = numbered_event_from_line(line)?;
+    Ok((agent, event))
+}
+
+/// The same, with its number, if it has one.
+pub fn numbered_event_from_line(
+    line: &[u8],
+) -> Result<(Symbol, Option<EventNumber>, Event), WireError> {
     let line: Line = super::read("event", line)?;
+    let number = line.number;
     let event = Event {
         at: Time::from_secs(line.t_s),
         goal: line.goal.map(Into::into),
         stack_depth: line.stack_depth,
         what: from_wire(line.what),
     };
-    Ok((line.agent.into(), event))
+    Ok((line.agent.into(), number, event))
 }
 
 /// Identifier and action of an execution, as they travel.

@@ -43,7 +43,7 @@ pub struct FactsVerdict {
 
 impl FactsVerdict {
     /// Accepted, or not, for this reason.
-    pub fn new<T>(result: &Result<T, WireError>) -> Self {
+    pub fn new<E: std::fmt::Display>(result: &Result<(), E>) -> Self {
         Self {
             v: VERSION,
             accepted: result.is_ok(),

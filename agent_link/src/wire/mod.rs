@@ -19,7 +19,9 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 pub use envelope::{Acknowledgement, Message, Refusal};
-pub use event::{event_from_line, event_to_line};
+pub use event::{
+    EventNumber, event_from_line, event_to_line, numbered_event_from_line, numbered_event_to_line,
+};
 pub use facts::{FactsVerdict, Observed, facts_from_user};
 pub use goal::{
     CommandVerdict, Verdict, command_from_user, command_to_wire, goal_from_user, goal_to_wire,

@@ -204,7 +204,7 @@ proptest! {
 
     #[test]
     fn answers_arrive_as_they_left(answer in answer(), seq in any::<u64>()) {
-        let text = write(&Acknowledgement::applied(seq, Some((&answer).into()))).unwrap();
+        let text = write(&Acknowledgement::applied(7, seq, Some((&answer).into()))).unwrap();
         let arrived: Acknowledgement = read("answer", text.as_bytes()).unwrap();
         prop_assert_eq!(arrived.seq, Some(seq));
         prop_assert_eq!(arrived.answer.map(protocol::Answer::from), Some(answer));

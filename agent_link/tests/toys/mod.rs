@@ -1,5 +1,9 @@
 //! Machines that do little, a robot to put them in, and a wire that loses answers.
 
+#![allow(dead_code, clippy::unwrap_used, missing_docs)]
+
+pub mod disk;
+
 use std::collections::{BTreeSet, VecDeque};
 use std::future::Future;
 use std::sync::Arc;
@@ -8,11 +12,11 @@ use std::time::Duration;
 
 use agent_core::model::{Atom, FactChange, Time};
 use agent_core::protocol::{
-    ActionId, Answer, Event, Happening, Input, Instruction, Machine, Output, Rejection, Reply,
-    Report,
+    ActionId, Answer, Command, Durable, Event, Happening, Input, Instruction, Ledger, Machine,
+    Output, Rejection, Reply, Report, Row, Rows, Unreadable, read_row,
 };
 use agent_link::session::{self, Role, Session};
-use agent_link::{Clock, Inspect, Keys, LinkError, Wiring, drive};
+use agent_link::{Clock, Inspect, Keys, LinkError, Memory, Wiring, drive};
 use serde_json::{Value, json};
 use tokio::sync::{Mutex, mpsc, oneshot, watch};
 use tokio::task::JoinHandle;
@@ -48,8 +52,12 @@ pub struct Toy {
     name: &'static str,
     executes: bool,
     thinks: bool,
+    commands: Option<&'static str>,
+    tells_of_goals: bool,
     outputs: VecDeque<Output<Value>>,
     pub seen: Vec<Input<Value>>,
+    heard_before: Vec<String>,
+    ledger: Ledger,
     tell: watch::Sender<Vec<Input<Value>>>,
 }
 
@@ -59,8 +67,12 @@ impl Toy {
             name,
             executes: false,
             thinks: false,
+            commands: None,
+            tells_of_goals: false,
             outputs: VecDeque::new(),
             seen: Vec::new(),
+            heard_before: Vec::new(),
+            ledger: Ledger::default(),
             tell: watch::Sender::new(Vec::new()),
         }
     }
@@ -74,6 +86,18 @@ impl Toy {
     /// Always has more to think about, and never comes to an end.
     pub fn thinking(mut self) -> Self {
         self.thinks = true;
+        self
+    }
+
+    /// Passes a command to suspend on to this executor.
+    pub fn commanding(mut self, executor: &'static str) -> Self {
+        self.commands = Some(executor);
+        self
+    }
+
+    /// Says of each goal at once that it was reached.
+    pub fn telling_of_goals(mut self) -> Self {
+        self.tells_of_goals = true;
         self
     }
 
@@ -111,7 +135,7 @@ impl Machine for Toy {
     type Out = Value;
 
     fn handle(&mut self, _now: Time, input: Input<Value>) -> Option<Reply> {
-        if input == Input::Wake {
+        if matches!(input, Input::Wake | Input::Neighbour { .. }) {
             return None;
         }
         self.seen.push(input.clone());
@@ -134,10 +158,29 @@ impl Machine for Toy {
                 }
             })),
             Input::Goal(goal) => Some(Reply::Goal(match goal.tasks[0].name.as_str() {
-                "go" => Ok(goal.id.unwrap_or_else(|| "unnamed".into())),
+                "go" => {
+                    let id = goal.id.unwrap_or_else(|| "unnamed".into());
+                    if self.tells_of_goals {
+                        self.outputs.push_back(Output::Event(Event {
+                            at: Time::ZERO,
+                            goal: Some(id.clone()),
+                            stack_depth: 0,
+                            what: Happening::GoalSucceeded,
+                        }));
+                    }
+                    Ok(id)
+                }
                 _ => Err(Rejection::NoTask),
             })),
-            Input::Command(_) => Some(Reply::Command(Ok(()))),
+            Input::Command(command) => {
+                if let (Some(executor), Command::Suspend(_)) = (self.commands, command) {
+                    self.outputs.push_back(Output::Instruct {
+                        to: executor.into(),
+                        instruction: Instruction::Suspend { id: id(1) },
+                    });
+                }
+                Some(Reply::Command(Ok(())))
+            }
             _ => None,
         }
     }
@@ -148,6 +191,29 @@ impl Machine for Toy {
 
     fn wake_at(&self) -> Option<Time> {
         self.thinks.then_some(Time::ZERO)
+    }
+}
+
+impl Durable for Toy {
+    fn write_down(&mut self) -> Vec<Row> {
+        self.ledger.put("m/heard".to_owned(), &self.heard());
+        self.ledger.take()
+    }
+
+    fn recall(&mut self, rows: &Rows) -> Result<(), Unreadable> {
+        self.ledger = Ledger::of(rows, "m/");
+        self.heard_before = read_row(rows, "m/heard")?.unwrap_or_default();
+        // What it was made to say it has said.
+        self.outputs.clear();
+        Ok(())
+    }
+}
+
+impl Toy {
+    /// What it has heard in this life and those before, in words.
+    pub fn heard(&self) -> Vec<String> {
+        let seen = self.seen.iter().map(|input| format!("{input:?}"));
+        self.heard_before.iter().cloned().chain(seen).collect()
     }
 }
 
@@ -198,11 +264,20 @@ impl Robot {
 
     /// Drives a toy in a session of its own. Returns once it listens.
     pub async fn drive(&self, toy: Toy, wire: impl FnOnce(&mut Wiring)) -> (Driven, Seen) {
+        self.drive_with(toy, None, wire).await
+    }
+
+    /// As [`drive`](Self::drive), with a journal.
+    pub async fn drive_with(
+        &self,
+        toy: Toy,
+        memory: Memory,
+        wire: impl FnOnce(&mut Wiring),
+    ) -> (Driven, Seen) {
         let session = self.client().await;
         let seen = Seen(toy.tell.subscribe());
         let name = toy.name;
-        let mut wiring = Wiring::new(&self.keys, name);
-        wiring.epoch = 1;
+        let mut wiring = Wiring::new(&self.keys, name, 1);
         wire(&mut wiring);
         let alive = self.wait_until_alive(name, wiring.epoch).await;
         let (stop, stopped) = oneshot::channel::<()>();
@@ -211,7 +286,7 @@ impl Robot {
             let stopped = async {
                 let _ = stopped.await;
             };
-            let result = drive(toy, wiring, &session, clock, stopped).await;
+            let result = drive(toy, memory, wiring, &session, clock, stopped).await;
             session::close(session).await;
             result
         });
@@ -359,6 +434,11 @@ impl Driven {
     pub async fn stop(self) -> Result<Toy, LinkError> {
         let _ = self.stop.send(());
         within(self.task).await.unwrap()
+    }
+
+    /// Ends it as a kill does: nothing more is said or written.
+    pub fn kill(self) {
+        self.task.abort();
     }
 
     /// Waits for an end that comes by itself.

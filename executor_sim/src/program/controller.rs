@@ -1,7 +1,7 @@
 //! The robot's controller as a program.
 
 use agent_link::options::{LinkOptions, PlaceOptions};
-use agent_link::{RoleError, Wiring, drive_in_world};
+use agent_link::{RoleError, Wiring, drive_in_world, next_epoch};
 use clap::Args;
 
 use super::{EXECUTOR, ProgramError, read};
@@ -39,11 +39,13 @@ pub async fn run(args: ControllerArgs) -> Result<(), ProgramError> {
     let node = place.node();
     let controller = Controller::new(&node.domain, &node.model, floor, faults)?;
     let keys = args.link.keys().map_err(RoleError::from)?;
+    let memory = args.link.memory(EXECUTOR, place.fingerprint())?;
+    let epoch = next_epoch(&memory).map_err(RoleError::from)?;
     let wiring = Wiring {
         local_in: Some(keys.executor_sensor()),
         local_out: Some(keys.world_command()),
-        ..Wiring::new(&keys, EXECUTOR)
+        ..Wiring::new(&keys, EXECUTOR, epoch)
     };
-    drive_in_world(controller, wiring, &args.link).await?;
+    drive_in_world(controller, memory, wiring, &args.link).await?;
     Ok(())
 }

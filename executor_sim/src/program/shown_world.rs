@@ -1,7 +1,7 @@
 //! A world that can be looked at.
 
 use agent_core::model::Time;
-use agent_core::protocol::{Input, Machine, Output, Reply};
+use agent_core::protocol::{Durable, Input, Machine, Output, Reply, Row, Rows, Unreadable};
 use agent_link::{Clock, Inspect};
 use serde_json::{Value, json};
 
@@ -16,6 +16,20 @@ const SHOWN: usize = 16;
 pub(super) struct ShownWorld {
     pub(super) world: World,
     pub(super) clock: Clock,
+}
+
+impl Durable for ShownWorld {
+    fn write_down(&mut self) -> Vec<Row> {
+        self.world.write_down()
+    }
+
+    fn recall(&mut self, rows: &Rows) -> Result<(), Unreadable> {
+        self.world.recall(rows)
+    }
+
+    fn is_stop(output: &Sensor) -> bool {
+        World::is_stop(output)
+    }
 }
 
 impl Machine for ShownWorld {

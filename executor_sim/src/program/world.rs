@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use agent_link::options::{LinkOptions, PlaceOptions};
-use agent_link::{Clock, RoleError, Wiring, drive, session};
+use agent_link::{Clock, Memory, RoleError, Wiring, drive, next_epoch, session};
 use clap::Args;
 
 use super::shown_world::ShownWorld;
@@ -34,24 +34,30 @@ pub struct WorldArgs {
 /// # Errors
 /// If it cannot start or cannot go on.
 pub async fn run(args: WorldArgs) -> Result<(), ProgramError> {
-    let (_, floor) = read(&args.place)?;
+    let (place, floor) = read(&args.place)?;
     let start = Place::at(&args.place.start);
     let world = World::new(floor, MoverSpec::default(), start)?;
-    drive_world(world, &args).await?;
+    let memory = args.link.memory(WORLD, place.fingerprint())?;
+    drive_world(world, memory, &args).await?;
     Ok(())
 }
 
-async fn drive_world(world: World, args: &WorldArgs) -> Result<(), RoleError> {
+async fn drive_world(world: World, memory: Memory, args: &WorldArgs) -> Result<(), RoleError> {
     let keys = args.link.keys()?;
-    let clock = Clock::start(args.speed)?;
+    let noted = args.link.state_file("clock.json")?;
+    let clock = match &noted {
+        Some(file) => Clock::continued(file, args.speed)?,
+        None => Clock::start(args.speed)?,
+    };
     let period = WORLD_S_BETWEEN_SNAPSHOTS / args.speed;
     let period = Duration::try_from_secs_f64(period).unwrap_or(LONGEST_PERIOD);
     let wiring = Wiring {
         takes_facts: true,
+        waits_for_the_disk: false,
         local_in: Some(keys.world_command()),
         local_out: Some(keys.executor_sensor()),
         snapshots_every: Some(period.clamp(SHORTEST_PERIOD, LONGEST_PERIOD)),
-        ..Wiring::new(&keys, WORLD)
+        ..Wiring::new(&keys, WORLD, next_epoch(&memory)?)
     };
     let session = args.link.open().await?;
     let service = clock.serve(&session, &keys).await;
@@ -59,10 +65,13 @@ async fn drive_world(world: World, args: &WorldArgs) -> Result<(), RoleError> {
         Err(error) => Err(error.into()),
         Ok(_service) => {
             let world = ShownWorld { world, clock };
-            let driven = drive(world, wiring, &session, clock, args.link.shutdown()).await;
+            let driven = drive(world, memory, wiring, &session, clock, args.link.shutdown()).await;
             driven.map(|_| ()).map_err(RoleError::from)
         }
     };
     session::close(session).await;
+    if let Some(file) = &noted {
+        clock.stop(file)?;
+    }
     driven
 }

@@ -13,6 +13,7 @@ use crate::protocol::durable::{Durable, Ledger, Row, Rows, Unreadable, read_row,
 use crate::protocol::{Answer, Event};
 
 const LINE: &str = "s/line";
+const EPOCH: &str = "s/epoch";
 const NEXT_EVENT: &str = "s/next-event";
 const EVENT: &str = "s/event/";
 const OBSERVED: &str = "s/observed/";
@@ -22,6 +23,15 @@ const REPORTS_IN: &str = "s/in/report/";
 const LOCAL_IN: &str = "s/in/local/";
 const INSTRUCTIONS_OUT: &str = "s/out/instruction/";
 const REPORTS_OUT: &str = "s/out/report/";
+
+/// The epoch of the last start of the station that has written these rows; `None` if none has. That
+/// of the next start must be greater.
+///
+/// # Errors
+/// If the row cannot be read.
+pub fn last_epoch(rows: &Rows) -> Result<Option<u64>, Unreadable> {
+    read_row(rows, EPOCH)
+}
 
 impl<M: Durable, T> Station<M, T>
 where
@@ -117,6 +127,7 @@ where
     pub(super) fn own_rows(&mut self) -> Vec<Row> {
         let ledger = &mut self.ledger;
         ledger.put(LINE.to_owned(), &self.line);
+        ledger.put(EPOCH.to_owned(), &self.epoch);
         ledger.put(NEXT_EVENT.to_owned(), &self.next_event);
         let mut keys = BTreeSet::new();
         for (number, event) in &self.last_ends {

@@ -12,6 +12,7 @@ mod memory;
 mod tests;
 
 pub use effect::{Arrival, Effect, Response};
+pub use memory::last_epoch;
 
 use std::collections::{BTreeMap, VecDeque};
 
