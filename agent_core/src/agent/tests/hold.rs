@@ -39,7 +39,9 @@ fn a_goal_that_is_being_planned_for_waits_for_the_superior() {
     rig.execute(1, "(go s2)");
     assert!(rig.agent.holds());
     assert_eq!(rig.said(), [""; 0]);
+    assert!(!rig.happened(|it| matches!(it, Happening::GoalStarted)));
     rig.neighbour("boss", true);
+    assert!(rig.happened(|it| matches!(it, Happening::GoalStarted)));
     assert_eq!(rig.said(), ["left: (move s0 s1)"]);
 }
 
