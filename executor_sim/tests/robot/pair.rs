@@ -37,7 +37,7 @@ pub struct Pair {
     /// Those that the world has got at this very moment: it may not have acknowledged them yet.
     just_heard: VecDeque<Envelope<MotorCommand>>,
     /// All that was ever done, by whatever world.
-    done: Vec<Done>,
+    pub done: Vec<Done>,
     seen: u64,
     /// From the world, repeated until the controller has acknowledged them.
     pub sensors: VecDeque<Envelope<Sensor>>,
