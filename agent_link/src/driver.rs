@@ -11,7 +11,7 @@ use agent_journal::Journal;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use tokio::time::{Interval, MissedTickBehavior};
+use tokio::time::{Instant, Interval, MissedTickBehavior};
 use zenoh::Session;
 
 use crate::clock::Clock;
@@ -22,6 +22,12 @@ use crate::mailbox;
 use crate::wire::{self, WireError};
 pub use crate::wiring::{LinkError, Wiring};
 use crate::writer::Writer;
+
+/// What moves when a machine is to end comes to rest within this, in seconds of everybody.
+const LAST_MOTIONS: Duration = Duration::from_secs(3);
+
+/// The last commit may take this long.
+const LAST_WORDS: Duration = Duration::from_secs(2);
 
 /// A journal, and what was in it when it was opened. Without one, a machine forgets everything when
 /// its process ends.
@@ -100,14 +106,27 @@ where
     let waits_for_the_disk = wiring.waits_for_the_disk;
     let (mut link, mut arrivals) = Link::open(session, wiring).await?;
     let mut shutdown = pin!(shutdown);
+    // Once it is to end: when it does so at the latest.
+    let mut last: Option<Instant> = None;
     let result = loop {
         write(&mut station, writer.as_mut(), &mut link, waits_for_the_disk);
         if let Err(error) = send(&mut station, &mut link, local.write) {
             break Err(error);
         }
+        if last.is_some() && station.machine().rests() {
+            break Ok(());
+        }
         let arrival = tokio::select! {
             biased;
-            () = &mut shutdown => break Ok(()),
+            () = &mut shutdown, if last.is_none() => {
+                last = Some(Instant::now() + LAST_MOTIONS);
+                station.wind_down(clock.now());
+                continue;
+            }
+            () = until(last) => {
+                tracing::warn!("{} ends, and has not come to rest", link.wiring.name);
+                break Ok(());
+            }
             written = written(writer.as_mut()) => {
                 match written {
                     Ok(()) => station.written(),
@@ -137,6 +156,10 @@ where
                 let name = link.wiring.name.clone();
                 break Err(LinkError::Outdated { name, key, seq });
             }
+            // Nothing is begun any more; whoever asks is answered after the next start.
+            Some(arrival) if last.is_some() && !matches!(arrival, mailbox::Arrival::Local(_)) => {
+                continue;
+            }
             Some(arrival) => match link.read(arrival, local.read) {
                 Some(arrival) => arrival,
                 None => continue,
@@ -145,7 +168,11 @@ where
         station.handle(clock.now(), arrival, sender);
     };
     link.close().await;
-    if let Some(writer) = writer {
+    if let Some(mut writer) = writer {
+        let written = tokio::time::timeout(LAST_WORDS, write_last(&mut station, &mut writer));
+        if written.await.is_err() {
+            tracing::warn!("the journal could not be written within {LAST_WORDS:?}");
+        }
         writer.finish().await;
     }
     result.map(|()| station.into_machine())
@@ -203,6 +230,34 @@ fn write<M>(
         }
     }
     station.release();
+}
+
+/// Has written down how things are at the end: what a machine does by itself is worth no commit while it
+/// runs.
+async fn write_last<M>(station: &mut Station<M, ReplyTo>, writer: &mut Writer)
+where
+    M: Durable,
+    M::Out: Clone,
+{
+    if !writer.is_idle() {
+        match writer.next().await {
+            Ok(()) => station.written(),
+            // It was said when it happened; the next start goes on from what was written before.
+            Err(_) => return,
+        }
+    }
+    if let Some(rows) = station.write_down() {
+        writer.begin(rows);
+        let _ = writer.next().await;
+    }
+}
+
+/// Returns at that time; never, if there is none.
+async fn until(at: Option<Instant>) {
+    match at {
+        None => std::future::pending().await,
+        Some(at) => tokio::time::sleep_until(at).await,
+    }
 }
 
 /// Sends all that may go out.

@@ -163,4 +163,13 @@ impl Machine for SimulatedRobot {
             .flatten()
             .min()
     }
+
+    fn wind_down(&mut self, now: Time) {
+        self.controller.wind_down(now);
+        self.pump(now);
+    }
+
+    fn rests(&self) -> bool {
+        self.controller.rests()
+    }
 }

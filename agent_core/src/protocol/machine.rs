@@ -122,4 +122,13 @@ pub trait Machine {
     /// When [`Input::Wake`] is due. A time that has passed already means: there is more to think
     /// about, wake me as soon as nothing else has come in.
     fn wake_at(&self) -> Option<Time>;
+
+    /// Its process is about to end: what moves by its doing is to stop. What comes of that is handled
+    /// as ever, until it [`rests`](Self::rests).
+    fn wind_down(&mut self, _now: Time) {}
+
+    /// Whether nothing moves by its doing.
+    fn rests(&self) -> bool {
+        true
+    }
 }

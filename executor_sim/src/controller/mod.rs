@@ -316,4 +316,14 @@ impl Machine for Controller {
     fn wake_at(&self) -> Option<Time> {
         self.active.as_ref()?.errand_at
     }
+
+    fn wind_down(&mut self, now: Time) {
+        // What cannot be stopped runs to its end, if there is time for it.
+        let _ = self.try_to_stop(now);
+    }
+
+    fn rests(&self) -> bool {
+        // Nobody hears from motors that cannot be reached; they stop by themselves.
+        self.gone.contains(crate::WORLD) || self.active.is_none() && self.halt.is_none()
+    }
 }

@@ -47,6 +47,14 @@ impl Machine for ShownWorld {
     fn wake_at(&self) -> Option<Time> {
         self.world.wake_at()
     }
+
+    fn wind_down(&mut self, now: Time) {
+        self.world.wind_down(now);
+    }
+
+    fn rests(&self) -> bool {
+        self.world.rests()
+    }
 }
 
 impl Inspect for ShownWorld {
@@ -73,7 +81,15 @@ impl Inspect for ShownWorld {
         let doors: serde_json::Map<String, Value> = doors
             .map(|(door, open)| (door.to_string(), json!(open)))
             .collect();
-        json!({ "doors": doors })
+        let done = self.world.done().map(|done| {
+            json!({
+                "number": done.number,
+                "t_s": done.at.secs(),
+                "what": done.what.to_string(),
+                "to_the_end": done.to_the_end,
+            })
+        });
+        json!({ "doors": doors, "done": done.collect::<Value>() })
     }
 
     fn stack(&self) -> Value {

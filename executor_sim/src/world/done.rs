@@ -61,22 +61,25 @@ pub enum Doing {
 
 impl fmt::Display for Done {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} at {}: ", self.number, self.at)?;
-        match &self.what {
-            Doing::Drive { arc, to, driven_m } => {
-                write!(f, "{driven_m:.2} m along {arc} to {to}")?;
-            }
-            Doing::Speech { place, spoken_s } => write!(f, "spoke {spoken_s:.1} s {place}")?,
-            Doing::Door { door, open } => {
-                let state = if *open { "open" } else { "closed" };
-                write!(f, "{door} {state}")?;
-            }
-            Doing::Deed { what } => write!(f, "{what}")?,
-        }
+        write!(f, "{} at {}: {}", self.number, self.at, self.what)?;
         if self.to_the_end {
             Ok(())
         } else {
             f.write_str(", broken off")
+        }
+    }
+}
+
+impl fmt::Display for Doing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Drive { arc, to, driven_m } => write!(f, "{driven_m:.2} m along {arc} to {to}"),
+            Self::Speech { place, spoken_s } => write!(f, "spoke {spoken_s:.1} s {place}"),
+            Self::Door { door, open } => {
+                let state = if *open { "open" } else { "closed" };
+                write!(f, "{door} {state}")
+            }
+            Self::Deed { what } => write!(f, "{what}"),
         }
     }
 }

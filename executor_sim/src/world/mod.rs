@@ -371,24 +371,28 @@ impl World {
                 }
             }
             MotorCommand::Halt { ticket } => {
-                if let Some(span) = self.speech.take() {
-                    self.hush(now, &span);
-                }
-                if let Some(DoorWork { span, door, .. }) = self.door_work.take() {
-                    let open = self.doors.get(&door) == Some(&true);
-                    let what = Doing::Door { door, open };
-                    self.chronicle.add(span.ticket, now, false, what);
-                }
-                if let Some((span, what)) = self.deed.take() {
-                    let what = Doing::Deed { what };
-                    self.chronicle.add(span.ticket, now, false, what);
-                }
                 self.halting = Some(ticket);
-                self.body.brake(&self.spec, now, Ending::Halted);
+                self.stop_everything(now);
                 self.tell_if_halted();
             }
             MotorCommand::Look => self.tell_pose(now),
         }
+    }
+
+    fn stop_everything(&mut self, now: Time) {
+        if let Some(span) = self.speech.take() {
+            self.hush(now, &span);
+        }
+        if let Some(DoorWork { span, door, .. }) = self.door_work.take() {
+            let open = self.doors.get(&door) == Some(&true);
+            let what = Doing::Door { door, open };
+            self.chronicle.add(span.ticket, now, false, what);
+        }
+        if let Some((span, what)) = self.deed.take() {
+            let what = Doing::Deed { what };
+            self.chronicle.add(span.ticket, now, false, what);
+        }
+        self.body.brake(&self.spec, now, Ending::Halted);
     }
 
     fn drive(&mut self, now: Time, order: (Ticket, Symbol, Symbol, f64)) {
@@ -468,5 +472,16 @@ impl Machine for World {
 
     fn wake_at(&self) -> Option<Time> {
         self.next_due().map(|(time, _)| time)
+    }
+
+    fn wind_down(&mut self, now: Time) {
+        // As motors do that hear nothing any more.
+        self.advance(now);
+        self.stop_everything(now);
+        self.advance(now);
+    }
+
+    fn rests(&self) -> bool {
+        self.stands() && self.next_due().is_none()
     }
 }

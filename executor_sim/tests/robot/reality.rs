@@ -149,3 +149,27 @@ fn a_world_that_cannot_be_is_refused() {
     let refused = World::new(floor(), lame, Place::at("n1")).err();
     assert_eq!(refused, Some(SetupError::Immobile(lame)));
 }
+
+#[test]
+fn a_world_that_is_about_to_end_brakes_and_then_rests() {
+    let mut world = world();
+    assert!(world.rests());
+    sensed(&mut world, Time::ZERO, drive(1, "arc5", "n6"));
+    assert!(!world.rests());
+    world.wind_down(secs(4.0));
+    let at = world.wake_at().expect("it rolls out");
+    assert!(at < secs(10.0), "it stops at {at}");
+    sensed(&mut world, at, Input::Wake);
+    assert!(world.rests());
+    assert!(
+        matches!(world.place(at), Place::Arc { .. }),
+        "{}",
+        world.place(at)
+    );
+    // What was driven counts, and not as done to its end.
+    let done = world
+        .done()
+        .next_back()
+        .expect("a drive that was broken off");
+    assert!(!done.to_the_end, "{done}");
+}

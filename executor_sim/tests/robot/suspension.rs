@@ -1,6 +1,6 @@
 //! Suspending, resuming, and what is kept between.
 
-use agent_core::protocol::{Answer, Report};
+use agent_core::protocol::{Answer, Machine, Report};
 
 use crate::rig::{Rig, id, is_success, is_suspended, reason};
 
@@ -152,4 +152,22 @@ fn a_started_report_comes_before_and_again_after() {
         .map(|(_, _, report)| matches!(report, Report::Started))
         .collect();
     assert_eq!(kinds, [true, false, true]);
+}
+
+#[test]
+fn a_robot_whose_controller_is_about_to_end_stops_and_remembers_what_it_did() {
+    let mut rig = Rig::new("n4");
+    rig.until(1.0);
+    assert!(rig.robot.rests());
+    rig.execute(1, "move n4 n1 arc7");
+    rig.until(3.5);
+    assert!(!rig.robot.rests());
+    rig.robot.wind_down(rig.now);
+    rig.until(20.0);
+    assert!(rig.robot.rests());
+    assert!(is_suspended(rig.only(1).1));
+    assert!(!rig.believes("at n1"));
+    assert_eq!(rig.resume(1), Answer::Accepted);
+    rig.until(60.0);
+    assert!(is_success(rig.told(1).last().expect("an end")));
 }

@@ -14,8 +14,9 @@ use super::Setup;
 use super::back_off::End;
 use crate::exit::Failure;
 
-/// A role that has been told to end may take this long to say good-bye.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// A role that has been told to end may take this long: it stops what moves, writes its journal, and
+/// says good-bye.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 /// The roles of a robot.
 #[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
@@ -97,7 +98,7 @@ impl RoleProcess {
         command
             .args(["role", kind.name(), "--until-stdin-ends"])
             .args(["--robot", &setup.robot, "--start", &setup.start]);
-        let _ = state;
+        command.arg("--state").arg(state);
         for endpoint in endpoints {
             command.args(["--connect", endpoint]);
         }

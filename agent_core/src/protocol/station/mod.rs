@@ -269,6 +269,14 @@ where
         }
     }
 
+    /// Its process is about to end ([`Machine::wind_down`](super::Machine::wind_down)).
+    pub fn wind_down(&mut self, now: Time) {
+        self.state += 1;
+        self.dirty = true;
+        self.machine.wind_down(now);
+        self.collect();
+    }
+
     /// A numbered instruction.
     fn instruction(&mut self, now: Time, message: Envelope<Instruction>, sender: Option<T>) {
         let receipt = self.mailboxes.instructions_in.receive(&message);
