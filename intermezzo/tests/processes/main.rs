@@ -8,6 +8,7 @@ mod ending;
 mod goals;
 mod locked;
 mod refusals;
+mod restart;
 mod side_by_side;
 mod supervision;
 mod typing;

@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 use std::time::Duration;
 
+use agent_core::model::Time;
 use agent_core::protocol::{Event, GoalRequest, Happening};
 use agent_link::registry::Registry;
-use agent_link::{Events, Keys, View, wire};
-use serde_json::Value;
+use agent_link::{ClientError, Events, Keys, wire};
 use tokio::time::Instant;
 use zenoh::handlers::FifoChannelHandler;
 use zenoh::pubsub::Subscriber;
@@ -20,8 +20,6 @@ use crate::target::{Connection, unanswered};
 
 /// A robot that is down may come back at another address: between two looks.
 const RETRY: Duration = Duration::from_millis(200);
-/// An agent that was started again tells the latest ends of goals again within this.
-const TOLD_AGAIN: Duration = Duration::from_secs(3);
 
 /// Asks for the goal, and returns when it has ended.
 pub(super) async fn run(
@@ -86,8 +84,8 @@ struct Waiting<'a> {
     there: BTreeSet<u64>,
     /// Since when there is none.
     gone: Option<Instant>,
-    /// After a new start: until then the end of the goal is told if it has ended.
-    ask_at: Option<Instant>,
+    /// Whether the goal may have ended unheard: after a new start, and before somebody listened.
+    unheard: bool,
 }
 
 impl<'a> Waiting<'a> {
@@ -98,7 +96,8 @@ impl<'a> Waiting<'a> {
             there: BTreeSet::new(),
             // Who is there is told at once.
             gone: None,
-            ask_at: None,
+            // It may be the name of a goal that has ended.
+            unheard: true,
         }
     }
 
@@ -118,7 +117,11 @@ impl<'a> Waiting<'a> {
                     }
                 }
                 Ok(token) = listening.tokens.recv_async() => self.token(&token),
-                _ = looks.tick() => self.look(listening).await?,
+                _ = looks.tick() => {
+                    if let Some(exit) = self.look(listening).await? {
+                        return Ok(exit);
+                    }
+                }
             }
         }
     }
@@ -148,14 +151,13 @@ impl<'a> Waiting<'a> {
             self.there.insert(epoch);
             if self.gone.take().is_some() {
                 self.say("the robot is there again");
-                self.ask_at = Some(Instant::now() + TOLD_AGAIN);
+                self.unheard = true;
             }
         } else {
             self.there.remove(&epoch);
             if self.there.is_empty() && self.gone.is_none() {
                 self.say("the robot is down: waiting for it");
                 self.gone = Some(Instant::now());
-                self.ask_at = None;
             }
         }
     }
@@ -167,13 +169,13 @@ impl<'a> Waiting<'a> {
         }
     }
 
-    async fn look(&mut self, listening: &mut Listening) -> Result<(), Failure> {
-        if self.ask_at.is_some_and(|at| at <= Instant::now()) {
-            self.ask_at = None;
-            return self.ask(listening).await;
-        }
+    /// The exit status, if the goal is found to have ended.
+    async fn look(&mut self, listening: &mut Listening) -> Result<Option<Exit>, Failure> {
         let Some(since) = self.gone else {
-            return Ok(());
+            return match self.unheard && !self.there.is_empty() {
+                true => self.ask(listening).await,
+                false => Ok(None),
+            };
         };
         if since.elapsed() >= self.args.patience {
             return Err(Failure::nobody_there(format_args!(
@@ -195,31 +197,43 @@ impl<'a> Waiting<'a> {
                 Err((connection, _)) => connection.close(Ok(())).await?,
             }
         }
-        Ok(())
+        Ok(None)
     }
 
-    /// Whether the agent that was started again still knows of the goal.
-    async fn ask(&mut self, listening: &Listening) -> Result<(), Failure> {
+    /// Asks the agent that has the goal how it stands.
+    async fn ask(&mut self, listening: &Listening) -> Result<Option<Exit>, Failure> {
         let client = &listening.connection.client;
-        match client.look(parent_agent::NAME, View::Status).await {
-            Ok(status) if !knows(&status, self.id) => Err(Failure::nobody_there(format_args!(
-                "the robot that is there again does not know of the goal `{}`",
-                self.id
-            ))
-            .advice("a robot keeps its goals where `intermezzo up --state DIR` says")),
+        let goal = match client.goal_state(parent_agent::NAME, self.id).await {
+            Ok(Some(goal)) => goal,
+            Ok(None) => {
+                return Err(Failure::nobody_there(format_args!(
+                    "the robot that is there does not know of the goal `{}`",
+                    self.id
+                ))
+                .advice("a robot keeps its goals where `intermezzo up --state DIR` says"));
+            }
             // It may be down again, which is told.
-            _ => Ok(()),
+            Err(ClientError::NoAnswer { .. }) => return Ok(None),
+            Err(error) => return Err(unanswered(error)),
+        };
+        self.unheard = false;
+        if goal["state"] != "ended" {
+            return Ok(None);
         }
+        let at = Time::from_secs(goal["at_s"].as_f64().unwrap_or_default());
+        let reason = || goal["reason"].as_str().unwrap_or_default().to_owned();
+        let what = match goal["outcome"].as_str() {
+            Some("succeeded") => Happening::GoalSucceeded,
+            Some("failed") => Happening::GoalFailed { reason: reason() },
+            _ => Happening::GoalUnknown { reason: reason() },
+        };
+        Ok(self.heard(&Event {
+            at,
+            goal: Some(self.id.into()),
+            stack_depth: 0,
+            what,
+        }))
     }
-}
-
-/// Whether an agent's status has the goal in any place.
-fn knows(status: &Value, id: &str) -> bool {
-    let lists = ["suspended", "waiting", "aside"].map(|list| &status[list]);
-    let listed = lists.into_iter().filter_map(Value::as_array).flatten();
-    std::iter::once(&status["running"])
-        .chain(listed)
-        .any(|goal| goal["id"] == id)
 }
 
 /// A connection to where the robot is now, if that is elsewhere than before.
