@@ -193,7 +193,17 @@ where
         return Ok((Station::new(name, wiring.epoch, machine), None));
     };
     let place = journal.name();
-    match Station::recall(name, wiring.epoch, machine, &rows) {
+    let station = if wiring.waits_for_the_disk {
+        Station::recall(name, wiring.epoch, machine, &rows)
+    } else {
+        // It has acknowledged what it had not written, so its mailboxes are not to be trusted:
+        // neighbours are to see that it has begun anew.
+        let mut machine = machine;
+        machine
+            .recall(&rows)
+            .map(|()| Station::new(name, wiring.epoch, machine))
+    };
+    match station {
         Ok(station) => {
             let writer = Writer::start(journal).map_err(LinkError::Thread)?;
             Ok((station, Some(writer)))
