@@ -104,7 +104,7 @@ where
     let (mut station, mut writer) = recall(machine, memory, &wiring)?;
     let mut snapshots = wiring.snapshots_every.map(every);
     let waits_for_the_disk = wiring.waits_for_the_disk;
-    let (mut link, mut arrivals) = Link::open(session, wiring).await?;
+    let (mut link, mut arrivals) = Link::open(session, wiring, station.line()).await?;
     let mut shutdown = pin!(shutdown);
     // Once it is to end: when it does so at the latest.
     let mut last: Option<Instant> = None;

@@ -85,7 +85,12 @@ impl Link {
                 question.answer(wire::write(&self.board.all()));
                 None
             }
-            Raw::Neighbour(name, epoch, appeared) => self.read_neighbour(&name, epoch, appeared),
+            Raw::Neighbour {
+                name,
+                epoch,
+                line,
+                appeared,
+            } => self.read_neighbour(&name, epoch, line, appeared),
             // The driver's own business.
             Raw::Look(..) | Raw::Superseded(_) | Raw::Outdated(..) => None,
         }
@@ -247,7 +252,13 @@ impl Link {
         }
     }
 
-    fn read_neighbour<L>(&mut self, name: &str, epoch: u64, appeared: bool) -> Option<Taken<L>> {
+    fn read_neighbour<L>(
+        &mut self,
+        name: &str,
+        epoch: u64,
+        line: u64,
+        appeared: bool,
+    ) -> Option<Taken<L>> {
         let is_there = if appeared { "there" } else { "gone" };
         tracing::info!("{name} (started at {epoch}) is {is_there}");
         if name == self.wiring.name {
@@ -260,8 +271,12 @@ impl Link {
         if appeared && executors.any(|executor| executor == name) {
             self.ask_what_holds(&Arc::from(name));
         }
-        let there = self.neighbours.hear(name, epoch, appeared)?;
+        let there = self.neighbours.hear(name, epoch, appeared);
         let name = name.into();
+        if appeared {
+            return Some((Arrival::Appeared { name, line }, None));
+        }
+        let there = there?;
         Some(nobody_waits(Input::Neighbour { name, there }))
     }
 

@@ -142,8 +142,23 @@ impl Keys {
     /// The liveliness token of one start of an agent. Without the epoch, a process that takes the
     /// place of one that hangs would appear unseen.
     pub fn alive(&self, agent: &str, epoch: u64) -> Result<String, NameError> {
+        self.alive_remembering(agent, epoch, epoch)
+    }
+
+    /// The same for an agent whose memory begins in an earlier epoch: neighbours see by it whether
+    /// one that has started again knows what was before.
+    pub fn alive_remembering(
+        &self,
+        agent: &str,
+        epoch: u64,
+        line: u64,
+    ) -> Result<String, NameError> {
         self.agent(agent)?;
-        Ok(self.under(&format!("alive/{agent}/{epoch}")))
+        let start = match line == epoch {
+            true => epoch.to_string(),
+            false => format!("{epoch}-{line}"),
+        };
+        Ok(self.under(&format!("alive/{agent}/{start}")))
     }
 
     /// The liveliness tokens of all agents.
@@ -153,9 +168,16 @@ impl Keys {
 
     /// Agent and epoch of a liveliness token.
     pub fn read_alive(key: &str) -> Option<(&str, u64)> {
-        let (rest, epoch) = key.rsplit_once('/')?;
+        let (agent, epoch, _) = Self::read_remembering(key)?;
+        Some((agent, epoch))
+    }
+
+    /// Agent and epoch of a liveliness token, and the epoch in which the agent's memory begins.
+    pub fn read_remembering(key: &str) -> Option<(&str, u64, u64)> {
+        let (rest, start) = key.rsplit_once('/')?;
         let (_, agent) = rest.rsplit_once('/')?;
-        Some((agent, epoch.parse().ok()?))
+        let (epoch, line) = start.split_once('-').unwrap_or((start, start));
+        Some((agent, epoch.parse().ok()?, line.parse().ok()?))
     }
 }
 
@@ -214,6 +236,10 @@ mod tests {
         let alive = keys.alive("child", 7).unwrap();
         assert_eq!(alive, "intermezzo/museum-1/alive/child/7");
         assert_eq!(Keys::read_alive(&alive), Some(("child", 7)));
+        let alive = keys.alive_remembering("child", 7, 5).unwrap();
+        assert_eq!(alive, "intermezzo/museum-1/alive/child/7-5");
+        assert_eq!(Keys::read_alive(&alive), Some(("child", 7)));
+        assert_eq!(Keys::read_remembering(&alive), Some(("child", 7, 5)));
     }
 
     #[test]

@@ -46,8 +46,9 @@ impl Link {
     pub(crate) async fn open(
         session: &Session,
         wiring: Wiring,
+        line: u64,
     ) -> Result<(Self, Arrivals), LinkError> {
-        let (mailbox, arrivals) = Mailbox::open(session, &wiring).await?;
+        let (mailbox, arrivals) = Mailbox::open(session, &wiring, line).await?;
         let mut link = Self {
             session: session.clone(),
             mailbox,

@@ -57,7 +57,13 @@ pub(crate) enum Arrival {
     /// All that was told by this executor.
     AllObserved(Arc<str>, ZBytes),
     /// Somebody has appeared (`true`) or vanished, in this epoch.
-    Neighbour(String, u64, bool),
+    Neighbour {
+        name: String,
+        epoch: u64,
+        /// The epoch in which its memory begins.
+        line: u64,
+        appeared: bool,
+    },
     /// This executor, of that line, has applied the instruction of that number, with this answer.
     Answered(Symbol, u64, u64, Answer),
     /// This superior, of that line, has applied the report of that number.
@@ -88,11 +94,12 @@ pub(crate) struct Mailbox {
 }
 
 impl Mailbox {
-    /// Declares what the wiring asks for. The liveliness token comes last, so that whoever is seen
+    /// Declares what the wiring asks for, for a machine whose memory begins in the epoch `line`. The liveliness token comes last, so that whoever is seen
     /// to be alive listens already.
     pub(crate) async fn open(
         session: &Session,
         wiring: &Wiring,
+        line: u64,
     ) -> Result<(Self, Arrivals), LinkError> {
         let (agents, users, arrivals) = lanes();
         let mut mailbox = Self {
@@ -151,9 +158,11 @@ impl Mailbox {
             mailbox.put(key, agents.clone(), told).await?;
         }
         mailbox.watch_neighbours(wiring).await?;
-        let token = session
-            .liveliness()
-            .declare_token(keys.alive(&wiring.name, wiring.epoch)?);
+        let token = session.liveliness().declare_token(keys.alive_remembering(
+            &wiring.name,
+            wiring.epoch,
+            line,
+        )?);
         mailbox.token = Some(token.await.map_err(LinkError::Zenoh)?);
         Ok((mailbox, arrivals))
     }
@@ -248,13 +257,17 @@ impl Mailbox {
             .declare_subscriber(wiring.keys.alive_any())
             .history(true)
             .callback(move |sample| {
-                let Some((name, epoch)) = Keys::read_alive(sample.key_expr().as_str()) else {
+                let token = sample.key_expr().as_str();
+                let Some((name, epoch, line)) = Keys::read_remembering(token) else {
                     return;
                 };
                 if (name, epoch) != (own.as_str(), own_epoch) {
-                    let appeared = sample.kind() == SampleKind::Put;
-                    let neighbour = Arrival::Neighbour(name.to_owned(), epoch, appeared);
-                    agents.deliver(neighbour);
+                    agents.deliver(Arrival::Neighbour {
+                        name: name.to_owned(),
+                        epoch,
+                        line,
+                        appeared: sample.kind() == SampleKind::Put,
+                    });
                 }
             })
             .await

@@ -125,12 +125,17 @@ mod tests {
             users.deliver(fact());
         }
         for epoch in 0..3 {
-            agents.deliver(Arrival::Neighbour("child".to_owned(), epoch, true));
+            agents.deliver(Arrival::Neighbour {
+                name: "child".to_owned(),
+                epoch,
+                line: epoch,
+                appeared: true,
+            });
         }
         for expected in 0..3 {
             let first = arrivals.recv().await;
             assert!(
-                matches!(first, Some(Arrival::Neighbour(_, epoch, _)) if epoch == expected),
+                matches!(first, Some(Arrival::Neighbour { epoch, .. }) if epoch == expected),
                 "{first:?}"
             );
         }

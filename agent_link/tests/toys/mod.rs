@@ -300,7 +300,8 @@ impl Robot {
         let subscriber = self
             .router
             .liveliness()
-            .declare_subscriber(self.keys.alive(name, epoch).unwrap())
+            // With whatever memory.
+            .declare_subscriber(format!("{}$*", self.keys.alive(name, epoch).unwrap()))
             .callback(move |_| {
                 let _ = appeared.send(());
             })
