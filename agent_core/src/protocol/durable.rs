@@ -6,7 +6,8 @@ use std::fmt::Display;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::Machine;
+use super::{ActionId, Machine};
+use crate::model::Symbol;
 
 /// One row of a journal, as it is now.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -56,6 +57,12 @@ pub trait Durable: Machine {
     /// If a row cannot be read, or does not fit what the machine was made with. The machine is of
     /// no use then.
     fn recall(&mut self, rows: &Rows) -> Result<(), Unreadable>;
+
+    /// Whether that execution is suspended on the word of that superior: then there is nothing to stop
+    /// of it until it is resumed.
+    fn is_suspended(&self, _superior: &Symbol, _id: &ActionId) -> bool {
+        false
+    }
 
     /// Whether an output to elsewhere stops something. Stopping never waits for the disk
     /// (decision 10).

@@ -16,10 +16,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::Agent;
-use crate::model::{Belief, Fact, FactChange, Map};
+use super::{Agent, ResumedBy};
+use crate::model::{Belief, Fact, FactChange, Map, Symbol};
 use crate::planner::Planner;
-use crate::protocol::{Durable, Ledger, Row, Rows, Unreadable};
+use crate::protocol::{ActionId, Durable, Ledger, Row, Rows, Unreadable};
 use same::Written;
 
 const AGENT: &str = "m/agent";
@@ -78,6 +78,11 @@ impl<P: Planner> Durable for Agent<P> {
 
     fn recall(&mut self, rows: &Rows) -> Result<(), Unreadable> {
         self.remember_all(rows)
+    }
+
+    fn is_suspended(&self, superior: &Symbol, id: &ActionId) -> bool {
+        let place = self.stack.place_of(superior, id);
+        place.is_some_and(|place| self.stack.entries()[place].resumed_by == ResumedBy::Superior)
     }
 }
 

@@ -153,8 +153,31 @@ where
         let written = self
             .held
             .partition_point(|(waits_for, _)| *waits_for <= state);
-        let released = self.held.drain(..written).map(|(_, effect)| effect);
+        let released: Vec<_> = self
+            .held
+            .drain(..written)
+            .map(|(_, effect)| effect)
+            .collect();
+        // What is told to start only now is stopped at once if that was decided meanwhile: neither the
+        // next writing nor the answer to the start is waited for.
+        let still_held = self.held.iter().map(|(_, effect)| effect);
+        let ahead: Vec<_> = released
+            .iter()
+            .chain(still_held)
+            .filter_map(|effect| {
+                let Effect::Instruct { to, message } = effect else {
+                    return None;
+                };
+                let Instruction::Suspend { id } = &message.body else {
+                    return None;
+                };
+                let starts_now = released.iter().any(|effect| starts_at(effect, to, id));
+                let (to, message) = (to.clone(), message.clone());
+                starts_now.then_some(Effect::StopAhead { to, message })
+            })
+            .collect();
         self.ready.extend(released);
+        self.ready.extend(ahead);
     }
 
     /// Everything that waits may go out, written down or not: for a station without a journal, and
@@ -297,7 +320,7 @@ where
         if let Some(ahead) = ahead {
             if ahead.seq <= message.seq {
                 self.ahead.remove(&message.from);
-            } else if !ahead.stopping && starts(&message.body, &ahead.id) {
+            } else if starts(&message.body, &ahead.id) {
                 // What starts it was overtaken by what stops it: no motion comes of it.
                 self.try_to_stop(now, &message.from, ahead);
             }
@@ -325,7 +348,13 @@ where
                 id: id.clone(),
                 stopping: false,
             };
-            self.try_to_stop(now, &message.from, ahead);
+            if self.machine.is_suspended(&message.from, &ahead.id) {
+                // What resumes it is still on its way. A report that it is suspended would be
+                // taken for the end of what has not begun.
+                self.ahead.insert(message.from.clone(), ahead);
+            } else {
+                self.try_to_stop(now, &message.from, ahead);
+            }
         }
     }
 
@@ -433,10 +462,7 @@ where
         if let Instruction::Suspend { id } = &message.body {
             // What has not been told to start yet need not be stopped ahead.
             let mut held = self.held.iter().map(|(_, effect)| effect);
-            let starting = held.any(|effect| match effect {
-                Effect::Instruct { to: who, message } => *who == to && starts(&message.body, id),
-                _ => false,
-            });
+            let starting = held.any(|effect| starts_at(effect, &to, id));
             if !starting {
                 let (to, message) = (to.clone(), message.clone());
                 self.ready.push_back(Effect::StopAhead { to, message });
@@ -480,6 +506,14 @@ where
 struct Opened<T> {
     reborn: bool,
     sender: Option<T>,
+}
+
+/// Whether something tells an executor to start an execution.
+fn starts_at<O, T>(effect: &Effect<O, T>, executor: &Symbol, id: &ActionId) -> bool {
+    match effect {
+        Effect::Instruct { to, message } => to == executor && starts(&message.body, id),
+        _ => false,
+    }
 }
 
 fn starts(instruction: &Instruction, id: &ActionId) -> bool {

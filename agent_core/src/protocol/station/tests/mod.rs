@@ -19,6 +19,7 @@ struct Toy {
     next: u64,
     outputs: VecDeque<Output<Infallible>>,
     ledger: Ledger,
+    suspended: Vec<ActionId>,
 }
 
 fn id(number: u64) -> ActionId {
@@ -85,6 +86,8 @@ impl Machine for Toy {
                 };
                 self.heard.push(format!("{verb} {}", id.number));
                 let suspends = verb == "suspend";
+                self.suspended.retain(|known| *known != id);
+                self.suspended.extend(suspends.then(|| id.clone()));
                 let report = match suspends {
                     true => Report::Suspended { facts: Vec::new() },
                     false => Report::Started,
@@ -139,6 +142,10 @@ impl Durable for Toy {
         self.ledger = Ledger::of(rows, "m/");
         (self.heard, self.next) = read_row(rows, "m/toy")?.unwrap_or_default();
         Ok(())
+    }
+
+    fn is_suspended(&self, _: &Symbol, id: &ActionId) -> bool {
+        self.suspended.contains(id)
     }
 }
 
@@ -278,6 +285,21 @@ fn what_has_not_been_told_to_start_is_not_stopped_ahead() {
 }
 
 #[test]
+fn what_starts_only_now_is_stopped_without_waiting_for_another_writing() {
+    let mut above = Desk::new("above", 1);
+    above.command(go());
+    above.start_writing();
+    above.command(stop());
+    assert_eq!(above.effects(), []);
+    above.end_writing();
+    let effects = above.effects();
+    let [Effect::Instruct { .. }, Effect::StopAhead { message, .. }] = &effects[..] else {
+        panic!("what stops it follows at once: {effects:?}");
+    };
+    assert_eq!((message.seq, message.body.id()), (2, &id(1)));
+}
+
+#[test]
 fn a_suspension_that_ran_ahead_is_followed_once() {
     let (mut above, mut below) = (Desk::new("above", 1), Desk::new("below", 1));
     above.command(go());
@@ -401,4 +423,34 @@ fn a_journal_with_a_damaged_row_is_not_recalled() {
         let recalled = Post::recall("above".into(), 2, Toy::default(), &rows);
         assert_eq!(recalled.map(|_| ()).unwrap_err().key, key);
     }
+}
+
+#[test]
+fn a_resumption_that_was_overtaken_by_the_next_stop_is_stopped_and_only_then_reported() {
+    let (mut above, mut below) = (Desk::new("above", 1), Desk::new("below", 1));
+    above.command(go());
+    above.command(stop());
+    above.write();
+    let mut sent: Vec<_> = above.effects().iter().filter_map(instruction).collect();
+    for message in sent.drain(..) {
+        below.handle(Arrival::Instruction(message), None);
+    }
+    let message = |seq, body| Envelope {
+        from: "above".into(),
+        line: 1,
+        epoch: 1,
+        seq,
+        settled: 0,
+        body,
+    };
+    let resume = Instruction::Resume {
+        id: id(1),
+        map: None,
+    };
+    let suspend = Instruction::Suspend { id: id(1) };
+    below.handle(Arrival::StopAhead(message(4, suspend.clone())), None);
+    assert_eq!(below.heard(), ["execute 1", "suspend 1"], "it stands");
+    below.handle(Arrival::Instruction(message(3, resume)), None);
+    below.handle(Arrival::Instruction(message(4, suspend)), None);
+    assert_eq!(below.heard()[2..], ["resume 1", "suspend 1"]);
 }
