@@ -1,6 +1,7 @@
 //! What a controller writes down, and how it comes back from that.
 
-use agent_core::protocol::{Durable, Ledger, Row, Rows, Unreadable, read_row};
+use agent_core::model::Symbol;
+use agent_core::protocol::{ActionId, Durable, Ledger, Row, Rows, Unreadable, read_row};
 
 use super::active::{Active, Begun, Cut};
 use super::memory::Memory;
@@ -48,6 +49,10 @@ impl Durable for Controller {
         self.outputs.clear();
         self.halt();
         Ok(())
+    }
+
+    fn is_suspended(&self, _: &Symbol, id: &ActionId) -> bool {
+        self.memory.record(id).is_some()
     }
 
     fn is_stop(command: &MotorCommand) -> bool {
