@@ -101,14 +101,19 @@ impl Ground {
         .expect("the museum's domains are for a robot")
     }
 
-    /// The world in the morning.
+    /// The world in the morning. Without hindsight no sensor tells afterwards what was done.
     ///
     /// # Panics
     /// If the robot starts nowhere, which a test would tell.
-    pub fn world(&self) -> World {
+    pub fn world(&self, hindsight: bool) -> World {
         let spec = MoverSpec::default();
-        World::new(self.floor.clone(), spec, Place::at(NODES[0]))
-            .expect("the robot starts from a node")
+        let world = World::new(self.floor.clone(), spec, Place::at(NODES[0]))
+            .expect("the robot starts from a node");
+        if hindsight {
+            world
+        } else {
+            world.without_hindsight()
+        }
     }
 }
 
@@ -150,7 +155,7 @@ fn ring() -> String {
             let id = 100 + 2 * n + back;
             let _ = write!(
                 features,
-                r#"{{"type": "Feature", "properties": {{"id": {id}, "startid": {a}, "endid": {b}, "metadata": {{"name": "w{}"{door}}}}}, "geometry": {{"type": "LineString", "coordinates": [[{}, {}], [{}, {}]]}}}},"#,
+                r#"{{"type": "Feature", "properties": {{"id": {id}, "startid": {a}, "endid": {b}, "metadata": {{"name": "w{}", "length_m": 6{door}}}}}, "geometry": {{"type": "LineString", "coordinates": [[{}, {}], [{}, {}]]}}}},"#,
                 n + 1,
                 p[0],
                 p[1],

@@ -230,6 +230,8 @@ pub struct Scenario {
     pub two_children: bool,
     /// Whether journals are redb files on a disk that forgets what was not synced.
     pub redb: bool,
+    /// Whether the robot's sensors can tell afterwards what was done.
+    pub hindsight: bool,
     /// The least time that a message takes.
     pub delay: Time,
     /// How much longer it may take.
@@ -264,6 +266,7 @@ impl Scenario {
             },
             two_children,
             redb: seed % REDB_EVERY == REDB_EVERY - 1,
+            hindsight: dice.per_mille(600),
             delay: ms(1),
             spread: ms(*dice.one_of(&[0, 5, 5, 200])),
             writing: ms(*dice.one_of(&[0, 3, 3, 40])),
@@ -416,13 +419,18 @@ impl fmt::Display for Scenario {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "seed {}: planner {:?}, {}, journals {}, messages take {} to {} s, writing takes up to {} s",
+            "seed {}: planner {:?}, {}, {}, journals {}, messages take {} to {} s, writing takes up to {} s",
             self.seed,
             self.planner,
             if self.two_children {
                 "two children"
             } else {
                 "one child"
+            },
+            if self.hindsight {
+                "sensors that know what was done"
+            } else {
+                "no hindsight"
             },
             if self.redb { "in redb" } else { "in memory" },
             self.delay.secs(),
