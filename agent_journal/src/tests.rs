@@ -83,6 +83,24 @@ fn what_was_written_is_there_again() {
     assert_eq!(rows, Rows::from([("s/a".into(), b"three".to_vec())]));
 }
 
+/// Former versions of redb (4.1) took some of its own files for damaged.
+#[test]
+fn a_journal_that_was_closed_is_sound_however_large_it_was() {
+    for pages in 0..10 {
+        let place = place();
+        for round in 0..3_usize {
+            let (mut journal, rows) = Journal::open(&place.path, whose()).unwrap();
+            assert_eq!(rows.len(), if round == 0 { 0 } else { pages });
+            let value = "x".repeat(900 + round * 700);
+            for number in 0..pages {
+                journal
+                    .commit(&[row(&format!("s/{number}"), &value)])
+                    .unwrap();
+            }
+        }
+    }
+}
+
 #[test]
 fn what_was_written_is_there_after_a_process_that_died() {
     let (place, died) = (place(), place());
