@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use agent_core::model::Time;
-use agent_link::Client;
+use agent_link::{Client, View};
 use maps::{Place, Site};
 
 use crate::cli::UpArgs;
 use crate::exit::{Exit, Failure};
 use crate::place;
-use crate::robot::{Robot, Setup};
+use crate::robot::{Robot, RoleKind, Setup};
 use crate::scenario::{Player, Scenario};
 use crate::show::{Ending, ForPeople, JsonLines, Programme, show};
 use crate::style::{BAD, BOLD, DIM, GOOD};
@@ -87,7 +87,7 @@ pub(super) async fn perform(
         let zero = if performance.from_the_start {
             ready
         } else {
-            introduce(setup, place, &robot);
+            introduce(setup, place, &robot).await;
             Time::ZERO
         };
         let observable = place.area().model.observable.iter().cloned();
@@ -128,20 +128,26 @@ fn judge(ending: Ending) -> (Exit, Vec<String>) {
 }
 
 /// How to talk to the robot, to be copied.
-fn introduce(setup: &Setup, place: &Place, robot: &Robot) {
+async fn introduce(setup: &Setup, place: &Place, robot: &Robot) {
     let name = robot.keys.robot();
     let option = if name == agent_link::options::DEFAULT_ROBOT {
         String::new()
     } else {
         format!(" --robot {name}")
     };
+    // Not necessarily where it began: it may go on from an earlier state.
+    let client = Client::new(&robot.session, &robot.keys);
+    let world = client.look(RoleKind::World.name(), View::Status).await;
+    let spot = world
+        .ok()
+        .and_then(|status| Some(status["where"].as_str()?.to_owned()));
     let speed = match setup.speed {
         1.0 => String::new(),
         speed => format!(", {speed} times as fast as real time"),
     };
     anstream::println!(
-        "{BOLD}{name}{BOLD:#} stands at {} in {}{speed}. It is reached at {} and ends on Ctrl-C.",
-        setup.start,
+        "{BOLD}{name}{BOLD:#} is {} in {}{speed}. It is reached at {} and ends on Ctrl-C.",
+        spot.as_deref().unwrap_or("somewhere"),
         place.name(),
         robot.endpoint,
     );

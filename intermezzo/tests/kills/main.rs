@@ -33,6 +33,8 @@ use times::Times;
 /// The robot is there again within this, whatever was done to it: a frozen role is only noticed and killed
 /// after some seconds.
 const RECOVERY: Duration = Duration::from_secs(60);
+/// A recovery from kills alone that takes longer is worth a look.
+const SLOW: Duration = Duration::from_secs(2);
 /// For a moment that may not come.
 const MOMENT: Duration = Duration::from_secs(3);
 /// All goals that are left are done within this once nothing is killed any more.
@@ -127,6 +129,12 @@ fn audit(books: &Books, goals: &[Accepted], seed: u64) -> String {
         heard("parent goal_suspended"),
         heard("parent goal_resumed"),
     )
+}
+
+/// Whether something was stopped without being killed.
+fn frozen(blow: &Blow) -> bool {
+    let mut strokes = blow.strokes.iter();
+    strokes.any(|stroke| matches!(stroke.how, How::Freeze(_)))
 }
 
 fn words(strokes: &[Stroke]) -> String {
@@ -234,14 +242,13 @@ async fn strike(
     if blow.rest && struck > 0 {
         all_there(rig, observer, &new).await;
         let ready = Instant::now();
+        if ready - begun > SLOW && !frozen(blow) {
+            println!("           slow:\n{}", rig.told());
+        }
         let moved = observer
             .until(MOMENT, |books| books.moved.filter(|moved| *moved >= ready))
             .await;
-        let only_kills = blow
-            .strokes
-            .iter()
-            .all(|stroke| matches!(stroke.how, How::Kill));
-        if only_kills {
+        if !frozen(blow) {
             times.recovered(up_killed, ready - begun, moved.map(|moved| moved - begun));
         }
     }
