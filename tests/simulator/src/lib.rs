@@ -5,6 +5,7 @@
 //! replayed and cut down. Somebody who sees everything ([`law`]) says what was wrong.
 
 pub mod dice;
+pub mod disk;
 pub mod ground;
 pub mod law;
 pub mod mutant;

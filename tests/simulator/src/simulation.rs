@@ -10,7 +10,7 @@ use agent_core::protocol::{
 };
 use executor_sim::{Faults, MotorCommand, Sensor, World};
 
-use crate::dice::drawn;
+use crate::dice::{Dice, drawn};
 use crate::ground::{DOORS, Ground};
 use crate::law::Law;
 use crate::mutant::Mutant;
@@ -119,6 +119,23 @@ struct Node {
     ends_dropped: u64,
 }
 
+impl Node {
+    fn with(store: Store) -> Self {
+        Self {
+            store,
+            ..Self::default()
+        }
+    }
+}
+
+fn store(scenario: &Scenario) -> Store {
+    if scenario.redb {
+        Store::real()
+    } else {
+        Store::default()
+    }
+}
+
 struct Request {
     goal: usize,
     wish: Option<Wish>,
@@ -183,7 +200,7 @@ impl<'a> Simulation<'a> {
             due: BTreeMap::new(),
             counter: 0,
             epochs: 100,
-            nodes: std::array::from_fn(|_| Node::default()),
+            nodes: std::array::from_fn(|_| Node::with(store(scenario))),
             world: ground.world(scenario.hindsight),
             world_hears: Inbox::default(),
             world_says: Channel::new(Kind::Local, Who::Executor),
@@ -361,7 +378,11 @@ impl<'a> Simulation<'a> {
         let before = self.nodes[who.index()].epoch;
         let forgets = self.mutant == Some(Mutant::ForgetTheEpoch) && before != 0;
         let epoch = if forgets { before } else { self.epochs };
-        let mut rows = self.nodes[who.index()].store.rows().clone();
+        let found = self.nodes[who.index()].store.open(who.name()).cloned();
+        let mut rows = match found {
+            Ok(rows) => rows,
+            Err(error) => return self.broken(|| format!("the journal of {who}: {error}")),
+        };
         if let Some(mutant) = self.mutant
             && !rows.is_empty()
         {
@@ -421,14 +442,24 @@ impl<'a> Simulation<'a> {
         if node.role.take().is_none() {
             return;
         }
-        if let Some(mut rows) = node.writing.take() {
-            if self.mutant == Some(Mutant::TornWriting) {
+        let mut interrupted = node.writing.take();
+        let mut written = Ok(());
+        match (&mut interrupted, self.mutant) {
+            (Some(rows), Some(Mutant::TornWriting)) => {
                 rows.truncate(rows.len() / 2);
-                node.store.write(&rows);
-            } else if kept && self.mutant != Some(Mutant::SkipTheJournal) {
-                node.store.write(&rows);
+                written = node.store.write(rows);
+                interrupted = None;
             }
+            (_, Some(Mutant::SkipTheJournal)) => interrupted = None,
+            (Some(rows), _) if kept => {
+                written = node.store.write(rows);
+                interrupted = None;
+            }
+            _ => {}
         }
+        let chance = [10, node.epoch, node.writings];
+        let mut dice = Dice(drawn(self.scenario.seed, chance));
+        node.store.crash(interrupted.as_deref(), &mut dice);
         node.channels.clear();
         node.backlog.clear();
         node.frozen = None;
@@ -436,6 +467,9 @@ impl<'a> Simulation<'a> {
         node.board = Board::default();
         node.read = [None; 6];
         node.seen = [0; 6];
+        if let Err(error) = written {
+            self.broken(|| format!("the journal of {who}: {error}"));
+        }
         self.law.died(who);
         self.count("processes killed");
         self.tell(|| format!("{who:<9} is killed"));
@@ -545,6 +579,10 @@ impl<'a> Simulation<'a> {
             return self.plan(until, Due::Written { who, epoch });
         }
         if node.full_until > now {
+            let rows = node.writing.as_deref().unwrap_or_default();
+            if let Err(error) = node.store.write_in_vain(rows) {
+                return self.broken(|| format!("the journal of {who}: {error}"));
+            }
             // Whoever waits is told that nothing is acknowledged; to us that is as if it were lost.
             if let Some(role) = &mut node.role {
                 role.refuse_waiting();
@@ -559,8 +597,8 @@ impl<'a> Simulation<'a> {
             Some(Mutant::LyingDisk) => node.writings % 8 == 7,
             _ => false,
         };
-        if !lies {
-            node.store.write(&rows);
+        if !lies && let Err(error) = node.store.write(&rows) {
+            return self.broken(|| format!("the journal of {who}: {error}"));
         }
         if let Some(role) = &mut node.role {
             role.written();
