@@ -21,6 +21,9 @@ pub struct Envelope<T> {
     pub seq: u64,
     /// The sender has written down the answers up to this number: nobody will ask for them again.
     pub settled: u64,
+    /// The receiver's line as the sender knows it, 0 if it does not: what was meant for somebody who
+    /// has lost its memory since is not for whoever has come in its place.
+    pub to_line: u64,
     /// What is sent.
     pub body: T,
 }
@@ -34,6 +37,7 @@ impl<T> Envelope<T> {
             epoch,
             seq,
             settled,
+            to_line,
             body,
         } = self;
         Envelope {
@@ -42,6 +46,7 @@ impl<T> Envelope<T> {
             epoch,
             seq,
             settled,
+            to_line,
             body: words(body),
         }
     }
@@ -98,6 +103,11 @@ impl<T> Outbox<T> {
     /// What is not acknowledged.
     pub fn waiting(&self) -> impl Iterator<Item = (u64, &T)> {
         self.waiting.iter().map(|(seq, body)| (*seq, body))
+    }
+
+    /// The receiver has lost its memory: what was meant for it is not sent any more.
+    pub fn give_up(&mut self) {
+        self.waiting.clear();
     }
 
     /// The receiver has answered message `seq`. Returns it; `None` if that was known already.
@@ -231,6 +241,7 @@ mod tests {
             epoch,
             seq,
             settled: 0,
+            to_line: 0,
             body: (),
         }
     }

@@ -15,6 +15,8 @@ pub struct Message<T> {
     seq: u64,
     #[serde(default)]
     settled: u64,
+    #[serde(default)]
+    to_line: u64,
     /// A copy that runs ahead of its number: an instruction to stop.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     ahead: bool,
@@ -51,6 +53,7 @@ impl<T: Clone> From<&Envelope<T>> for Message<T> {
             epoch: envelope.epoch,
             seq: envelope.seq,
             settled: envelope.settled,
+            to_line: envelope.to_line,
             ahead: false,
             body: envelope.body.clone(),
         }
@@ -65,6 +68,7 @@ impl<T> From<Message<T>> for Envelope<T> {
             epoch: message.epoch,
             seq: message.seq,
             settled: message.settled,
+            to_line: message.to_line,
             body: message.body,
         }
     }

@@ -176,6 +176,7 @@ fn sent<T: Serialize + DeserializeOwned>(body: T) -> T {
         from: "parent".into(),
         line: 1,
         settled: 0,
+        to_line: 0,
         epoch: 3,
         seq: 17,
         body: to_value(&body).unwrap(),

@@ -251,6 +251,7 @@ impl Pair {
             epoch: 1,
             seq: self.next_instruction,
             settled: 0,
+            to_line: 0,
             body: instruction,
         });
         self.next_instruction += 1;

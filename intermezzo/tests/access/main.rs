@@ -48,6 +48,7 @@ const QUESTIONS: [(&str, &[&str], &[&str]); 29] = [
     ("executor/stack", LOOK, &["executor"]),
     ("world/plans", LOOK, &["world"]),
     ("parent/goals", LOOK, &["parent"]),
+    ("parent/journal", LOOK, &["parent"]),
     ("parent/instruction", &[], &[]),
     ("parent/report", &["child"], &["parent"]),
     ("parent/facts", &[], &[]),

@@ -1237,6 +1237,7 @@ impl<'a> Simulation<'a> {
                 epoch: 1,
                 seq,
                 settled: seq - 1,
+                to_line: 0,
                 body: sensor,
             });
             self.world_says.queue.push_back((seq, message));

@@ -78,6 +78,7 @@ impl Mailboxes {
             epoch,
             seq,
             settled: 0,
+            to_line: 0,
             body,
         }
     }
@@ -93,6 +94,12 @@ impl Mailboxes {
         let instruction = sending.outbox.acknowledge(seq)?;
         sending.answered_in = state;
         Some(instruction)
+    }
+
+    pub(super) fn give_up_instructions(&mut self, to: &Symbol) {
+        if let Some(sending) = self.instructions_out.get_mut(to) {
+            sending.outbox.give_up();
+        }
     }
 
     pub(super) fn report_delivered(&mut self, by: &Symbol, seq: u64, state: u64) {

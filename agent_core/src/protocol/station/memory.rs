@@ -53,6 +53,7 @@ where
         let Some(line) = read_row(rows, LINE)? else {
             return Ok(Self::new(name, epoch, machine));
         };
+        let _: Option<u64> = read_row(rows, EPOCH)?;
         machine.recall(rows)?;
         let mut station = Self::new(name, epoch, machine);
         // What the machine has said at its start stands behind what it had said before.

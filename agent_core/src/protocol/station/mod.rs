@@ -213,6 +213,7 @@ where
         match &mut effect {
             Effect::Instruct { to, message } => {
                 message.settled = self.mailboxes.instructions_settled(to);
+                message.to_line = self.neighbours.get(to).copied().unwrap_or(0);
             }
             Effect::Report { to, message } => message.settled = self.mailboxes.reports_settled(to),
             _ => {}
@@ -266,10 +267,11 @@ where
                 seq,
                 answer,
             } => {
+                // First, so that nothing is made of what somebody says who was not meant.
+                self.know(now, &by, line);
                 if let Some(to) = self.mailboxes.instruction_answered(&by, seq, self.state) {
                     self.tell(now, Input::Answer { to, answer });
                 }
-                self.know(now, &by, line);
             }
             Arrival::Delivered { by, line, seq } => {
                 self.mailboxes.report_delivered(&by, seq, self.state);
@@ -307,6 +309,13 @@ where
             return;
         };
         self.know(now, &message.from, message.line);
+        if message.to_line != 0 && message.to_line != self.line {
+            // Its number counts for nothing: the sender gives up all that it has not had answered.
+            let reason = "it was meant for one who has lost its memory since".to_owned();
+            let answer = Some(Answer::Rejected { reason });
+            let seq = message.seq;
+            return self.respond(opened.sender, Response::Applied { seq, answer });
+        }
         let instruction = message.body.clone();
         let ahead = self.ahead.get(&message.from).cloned();
         // A superior that has started again may have decided otherwise: what ran ahead had not been
@@ -393,6 +402,7 @@ where
         match self.neighbours.insert(name.clone(), line) {
             Some(before) if before < line => {
                 self.ahead.remove(name);
+                self.give_up_instructions(name);
                 let name = name.clone();
                 self.tell(now, Input::Reborn { name });
             }
@@ -401,6 +411,15 @@ where
             }
             _ => {}
         }
+    }
+
+    /// What an executor was told that has lost its memory is not for it any more: nobody knows
+    /// whether it was done, and the machine decides anew.
+    fn give_up_instructions(&mut self, executor: &Symbol) {
+        self.mailboxes.give_up_instructions(executor);
+        let stays = |effect: &Effect<M::Out, T>| !matches!(effect, Effect::Instruct { to, .. } | Effect::StopAhead { to, .. } if to == executor);
+        self.held.retain(|(_, effect)| stays(effect));
+        self.ready.retain(stays);
     }
 
     fn tell(&mut self, now: Time, input: Input<M::In>) -> Option<Reply> {
@@ -497,6 +516,7 @@ where
             epoch: self.epoch,
             seq,
             settled: 0,
+            to_line: 0,
             body,
         }
     }

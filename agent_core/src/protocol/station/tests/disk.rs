@@ -69,6 +69,7 @@ fn an_instruction_that_makes_no_sense_is_rejected_once_and_holds_nothing_up() {
         epoch: 1,
         seq: 1,
         settled: 0,
+        to_line: 0,
         body: "it dances".to_owned(),
     };
     below.handle(Arrival::Unreadable(message.clone()), Some(1));
@@ -79,6 +80,7 @@ fn an_instruction_that_makes_no_sense_is_rejected_once_and_holds_nothing_up() {
         epoch: 1,
         seq: 2,
         settled: 0,
+        to_line: 0,
         body: execute(1),
     };
     below.handle(Arrival::Instruction(next), Some(3));

@@ -392,9 +392,12 @@ fn a_neighbour_without_its_memory_is_noticed_once_from_above_and_from_below() {
     above.handle(answered(1, 1), None);
     above.handle(answered(7, 2), None);
     above.handle(answered(7, 3), None);
+    above.command(go());
+    above.handle(answered(7, 4), None);
     assert_eq!(
         above.heard(),
-        ["answer 1", "answer 2", "reborn below", "answer 3"]
+        ["answer 1", "reborn below", "answer 4"],
+        "what the former one was told is given up"
     );
     for line in [7, 9] {
         let name = "below".into();
@@ -406,9 +409,61 @@ fn a_neighbour_without_its_memory_is_noticed_once_from_above_and_from_below() {
     );
     assert_eq!(
         above.heard().len(),
-        5,
+        4,
         "noticed once more, by its appearing"
     );
+}
+
+#[test]
+fn what_was_meant_for_one_who_has_lost_its_memory_is_not_followed_by_the_next() {
+    let (mut above, mut below) = (Desk::new("above", 1), Desk::new("below", 4));
+    let appeared = |line| Arrival::Appeared {
+        name: "below".into(),
+        line,
+    };
+    above.handle(appeared(4), None);
+    above.command(go());
+    above.command(go());
+    above.write();
+    let meant: Vec<_> = above.effects().iter().filter_map(instruction).collect();
+    let mut next = Desk::new("below", 9);
+    next.handle(Arrival::Instruction(meant[0].clone()), Some(1));
+    assert!(next.heard().is_empty(), "{:?}", next.heard());
+    next.write();
+    let rejected = next.effects().into_iter().any(|effect| {
+        matches!(
+            effect,
+            Effect::Respond {
+                response: Response::Applied {
+                    answer: Some(Answer::Rejected { .. }),
+                    ..
+                },
+                ..
+            }
+        )
+    });
+    assert!(rejected);
+    below.handle(Arrival::Instruction(meant[0].clone()), None);
+    assert_eq!(below.heard(), ["execute 1"]);
+
+    above.command(go());
+    above.handle(appeared(9), None);
+    above.command(go());
+    above.write();
+    let sent: Vec<_> = above.effects().iter().filter_map(instruction).collect();
+    assert_eq!(
+        sent.iter().map(|m| (m.seq, m.to_line)).collect::<Vec<_>>(),
+        [(4, 9)]
+    );
+    above.restart();
+    let again: Vec<_> = above.effects().iter().filter_map(instruction).collect();
+    assert_eq!(
+        again.len(),
+        1,
+        "only what is meant for the new one is sent again"
+    );
+    next.handle(Arrival::Instruction(again[0].clone()), None);
+    assert_eq!(next.heard(), ["execute 4"]);
 }
 
 #[test]
@@ -441,6 +496,7 @@ fn a_resumption_that_was_overtaken_by_the_next_stop_is_stopped_and_only_then_rep
         epoch: 1,
         seq,
         settled: 0,
+        to_line: 0,
         body,
     };
     let resume = Instruction::Resume {
