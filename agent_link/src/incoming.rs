@@ -126,28 +126,15 @@ impl Link {
         read: impl FnOnce(Value) -> Result<B, WireError>,
     ) -> Option<(Envelope<B>, ReplyTo)> {
         let (message, question) = self.read_message(what, question)?;
-        let Envelope {
-            from,
-            line,
-            epoch,
-            seq,
-            settled,
-            body,
-        } = Envelope::from(message);
-        match read(body) {
+        let envelope = Envelope::from(message);
+        let seq = envelope.seq;
+        match read(envelope.body.clone()) {
             Ok(body) => {
-                let envelope = Envelope {
-                    from,
-                    line,
-                    epoch,
-                    seq,
-                    settled,
-                    body,
-                };
+                let envelope = envelope.map(|_| body);
                 Some((envelope, ReplyTo::Sender(seq, question)))
             }
             Err(error) => {
-                tracing::warn!("from {from}: {error}");
+                tracing::warn!("from {}: {error}", envelope.from);
                 acknowledge(question, &Acknowledgement::refused(Some(seq), error));
                 None
             }

@@ -168,15 +168,15 @@ impl agent_journal::StorageBackend for Found {
     }
 
     fn set_len(&self, _: u64) -> io::Result<()> {
-        panic!("a journal that is only looked at is written to");
+        unreachable!("a journal that is only looked at is not written to");
     }
 
     fn sync_data(&self) -> io::Result<()> {
-        panic!("a journal that is only looked at is written to");
+        unreachable!("a journal that is only looked at is not written to");
     }
 
     fn write(&self, _: u64, _: &[u8]) -> io::Result<()> {
-        panic!("a journal that is only looked at is written to");
+        unreachable!("a journal that is only looked at is not written to");
     }
 }
 

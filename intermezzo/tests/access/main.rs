@@ -33,7 +33,7 @@ const ASK: &[&str] = &["operator", "supervisor"];
 const LOOK: &[&str] = &["operator", "viewer", "supervisor"];
 
 /// What may be asked: the key, who may ask, and whom that reaches.
-const QUESTIONS: [(&str, &[&str], &[&str]); 29] = [
+const QUESTIONS: [(&str, &[&str], &[&str]); 30] = [
     ("goal/normal", ASK, &["parent"]),
     ("goal/normal/operator", &["operator"], &["parent"]),
     ("goal/normal/viewer", &[], &[]),
