@@ -3,7 +3,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use agent_core::agent::Agent;
 use agent_core::model::{Symbol, Time};
+use agent_core::planner::AnyPlanner;
 use agent_core::protocol::{
     ActionId, Answer, Effect, Envelope, Event, Happening, Instruction, Report, ReportBody,
 };
@@ -11,6 +13,11 @@ use executor_sim::Sensor;
 
 use crate::process::{AnyEffect, Role};
 use crate::scenario::Who;
+
+/// What stops has stopped after that long, if nothing goes wrong.
+pub const BOUND: Time = Time(5_000_000);
+/// So long after something has gone wrong it may still have consequences.
+const RECOVERY: Time = Time(5_000_000);
 
 /// What a superior has been told of an execution.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -50,6 +57,14 @@ pub struct Law {
     stopped_ahead: [BTreeSet<ActionId>; 6],
     heard: BTreeMap<(Who, Who), (u64, u64)>,
     instructed: BTreeMap<(Who, Symbol), (u64, u64)>,
+    /// Who has been told by its process that whom is gone, and not that it is back.
+    gone: BTreeSet<(Who, Symbol)>,
+    /// What each is having done.
+    doing: [Option<ActionId>; 6],
+    /// What is to stop, since when that was promised.
+    promised: BTreeMap<ActionId, Time>,
+    /// Until then, or still, things go wrong that may make stopping take longer.
+    trouble_until: Time,
     /// Whether somebody's journal was lost: then some of this cannot be asked for.
     pub memory_lost: bool,
     /// Whether the parent's was.
@@ -82,8 +97,9 @@ impl Law {
         self.ends.contains_key(goal)
     }
 
-    /// A role has taken something in. Its agent is in order, and what it does belongs to somebody.
-    pub fn handled(&mut self, role: &Role) {
+    /// A role has taken something in. Its agent is in order, and what it does belongs to somebody
+    /// who is there.
+    pub fn handled(&mut self, now: Time, who: Who, role: &Role) {
         if let Some(agent) = role.as_agent() {
             agent.check();
             if let (Some((id, ..)), Some(intention)) = (agent.executing(), agent.running())
@@ -91,11 +107,66 @@ impl Law {
             {
                 self.part_of.insert(id.clone(), above.clone());
             }
+            self.holds(now, who, agent);
+        }
+    }
+
+    /// Nothing begins while its superior is gone.
+    fn holds(&mut self, now: Time, who: Who, agent: &Agent<AnyPlanner>) {
+        let doing = agent.executing().map(|(id, ..)| id);
+        if self.doing[who.index()].as_ref() == doing {
+            return;
+        }
+        self.doing[who.index()] = doing.cloned();
+        if let (Some(id), Some(intention)) = (doing, agent.running())
+            && let Some((superior, _)) = &intention.goal.superior
+            && self.gone.contains(&(who, superior.clone()))
+        {
+            self.broken(now, || {
+                format!("{who} begins with {id} while {superior} is gone, as it knows")
+            });
+        }
+    }
+
+    /// A process is told that a neighbour of its is there, or not.
+    pub fn sees(&mut self, who: Who, neighbour: Symbol, there: bool) {
+        if there {
+            self.gone.remove(&(who, neighbour));
+        } else {
+            self.gone.insert((who, neighbour));
+        }
+    }
+
+    /// Something goes wrong until then.
+    pub fn trouble(&mut self, until: Time) {
+        self.trouble_until = self.trouble_until.max(until);
+    }
+
+    /// L2: what was promised to stop has stopped, unless something was in the way.
+    pub fn stop_is_due(&mut self, now: Time, id: &ActionId, promised: Time) {
+        let calm = self.trouble_until + RECOVERY <= promised;
+        if self.promised.get(id) != Some(&promised) || !calm || self.memory_lost {
+            return;
+        }
+        self.promised.remove(id);
+        let Some(active) = self.active.and_then(|ticket| self.tickets.get(&ticket)) else {
+            return;
+        };
+        if active == id || self.part_of.get(active) == Some(id) {
+            let active = active.clone();
+            self.broken(now, || {
+                format!(
+                    "L2: {id} was to stop at {:.3} s, and the robot still does {active}",
+                    promised.secs()
+                )
+            });
         }
     }
 
     /// A process has died.
     pub fn died(&mut self, who: Who) {
+        self.gone.retain(|(of, _)| *of != who);
+        self.doing[who.index()] = None;
         self.sent_to_start[who.index()].clear();
         self.stopped_ahead[who.index()].clear();
         if who == Who::Executor {
@@ -122,6 +193,7 @@ impl Law {
                         self.known.entry(id.clone()).or_insert(Known::Running);
                     }
                     Instruction::Resume { .. } => {
+                        self.promised.remove(id);
                         self.sent_to_start[who.index()].insert(id.clone(), now);
                         self.stopped_ahead[who.index()].remove(id);
                         let known = self.known.get(id).copied();
@@ -230,8 +302,21 @@ impl Law {
         self.known.insert(id.clone(), known);
     }
 
-    /// A superior has taken in an answer.
-    pub fn answered(&mut self, instruction: &Instruction, answer: &Answer) {
+    /// A superior has taken in an answer. Whether something was promised to stop from now on.
+    pub fn answered(&mut self, now: Time, instruction: &Instruction, answer: &Answer) -> bool {
+        if let Instruction::Suspend { id } = instruction {
+            if *answer == Answer::Suspending {
+                self.promised.insert(id.clone(), now);
+                return true;
+            }
+            // What does not stop may be a part of something else that is to.
+            self.trouble(now + BOUND);
+        }
+        self.learned_from(instruction, answer);
+        false
+    }
+
+    fn learned_from(&mut self, instruction: &Instruction, answer: &Answer) {
         let known = match (instruction, answer) {
             (_, Answer::Finished { .. }) => Known::Ended,
             (Instruction::Clear { .. }, Answer::Accepted) => Known::Cleared,

@@ -201,6 +201,18 @@ pub enum What {
 }
 
 impl What {
+    /// How long it goes on.
+    pub fn lasts(&self) -> Time {
+        match self {
+            Self::Weather { lasts, .. }
+            | Self::Cut { lasts, .. }
+            | Self::Freeze { lasts, .. }
+            | Self::FullDisk { lasts, .. }
+            | Self::SlowDisk { lasts, .. } => *lasts,
+            _ => Time::ZERO,
+        }
+    }
+
     /// Whether it is a fault, and not the ordinary course of things; with a name to count it by.
     pub fn fault(&self) -> Option<&'static str> {
         Some(match self {

@@ -5,18 +5,18 @@ use std::collections::{BTreeMap, VecDeque};
 use agent_core::language::{parse_fact_change, parse_tasks};
 use agent_core::model::{FactChange, Symbol, Time};
 use agent_core::protocol::{
-    Arrival, Command, Effect, Envelope, GoalRequest, Inbox, Input, Machine, Output, Receipt,
-    Response, Row,
+    ActionId, Arrival, Command, Effect, Envelope, GoalRequest, Inbox, Input, Machine, Output,
+    Receipt, Response, Row, Rows, Unreadable,
 };
 use executor_sim::{Faults, MotorCommand, Sensor, World};
 
 use crate::dice::{Dice, drawn};
 use crate::ground::{DOORS, Ground};
-use crate::law::Law;
+use crate::law::{BOUND, Law};
 use crate::mutant::Mutant;
 use crate::process::{AnyArrival, AnyEffect, Board, Kind, Role, Way, name};
 use crate::scenario::{EVERYONE, Point, Scenario, What, Who, Wish};
-use crate::store::Store;
+use crate::store::{Store, apply};
 use crate::wire::{Channel, Message};
 
 /// Without an answer for so long a message counts as lost.
@@ -29,6 +29,8 @@ const LEASE: Time = Time(1_000_000);
 const TRY_AGAIN: Time = Time(200_000);
 /// A user asks again after that long.
 const PATIENCE: Time = Time(2_000_000);
+/// One writing in so many is read again at once.
+const RECALL_EVERY: u64 = 50;
 /// A scenario never takes so many steps.
 const MOST_STEPS: u64 = 200_000;
 /// Nor does anything go on for so long after the last fault.
@@ -86,6 +88,11 @@ enum Due {
         attempts: u32,
     },
     UserAsks(u32),
+    /// It was promised that something stops.
+    Promised {
+        id: ActionId,
+        promised: Time,
+    },
     Happening(usize),
     /// Crash, if it has not come to it otherwise.
     CrashAtLast {
@@ -355,6 +362,7 @@ impl<'a> Simulation<'a> {
                 attempts,
             } => self.ask_what_holds(who, epoch, executor, attempts),
             Due::UserAsks(request) => self.user_asks(request),
+            Due::Promised { id, promised } => self.law.stop_is_due(self.now, &id, promised),
             Due::Happening(n) => {
                 let what = self.scenario.happenings[n].1.clone();
                 self.happening(what);
@@ -388,22 +396,7 @@ impl<'a> Simulation<'a> {
         {
             mutant.found(&mut rows);
         }
-        let scenario = self.scenario;
-        let role = match who {
-            Who::Executor => {
-                let controller = self.ground.controller(faults(scenario));
-                Role::controller(who, epoch, controller, &rows, self.mutant)
-            }
-            Who::Parent => {
-                let two = scenario.two_children;
-                let agent = self.ground.parent(epoch, scenario.planner, two);
-                Role::agent(who, epoch, agent, &rows, self.mutant)
-            }
-            _ => {
-                let agent = self.ground.child(who.name(), epoch, scenario.planner);
-                Role::agent(who, epoch, agent, &rows, self.mutant)
-            }
-        };
+        let role = self.role(who, epoch, &rows);
         let role = match role {
             Ok(role) => role,
             Err(error) => {
@@ -411,30 +404,73 @@ impl<'a> Simulation<'a> {
             }
         };
         self.tell(|| format!("{who:<9} starts in epoch {epoch} with {} rows", rows.len()));
-        if who == Who::Parent
-            && let Some(agent) = role.as_agent()
-        {
-            let line = role.line();
-            let lost: Vec<Symbol> = self
-                .law
-                .owed(line)
-                .filter(|goal| !knows(agent, goal, &rows))
-                .cloned()
-                .collect();
-            if let Some(goal) = lost.first() {
-                self.broken(|| format!("S1: the parent has forgotten {goal}"));
-            }
-        }
-        self.law.handled(&role);
+        self.law.handled(self.now, who, &role);
         let node = &mut self.nodes[who.index()];
         node.role = Some(role);
         node.epoch = epoch;
         node.instructed = false;
+        if who == Who::Parent {
+            self.owes_nothing();
+        }
         for other in EVERYONE {
             self.look_soon(other, who);
             self.look_soon(who, other);
         }
         self.pump(who);
+    }
+
+    /// S1: of every goal that the parent has acknowledged there is something in its journal.
+    fn owes_nothing(&mut self) {
+        let node = &self.nodes[Who::Parent.index()];
+        let line = node.role.as_ref().map_or(0, Role::line);
+        let rows = node.store.rows();
+        let lost = self.law.owed(line).find(|goal| !speak_of(rows, goal));
+        if let Some(goal) = lost.cloned() {
+            self.broken(|| format!("S1: the parent has forgotten {goal}"));
+        }
+    }
+
+    /// S10: who recalls what was just written, with what is in the journal, is as the one that has
+    /// written it.
+    fn recalls(&mut self, who: Who, writing: &[Row]) {
+        let node = &self.nodes[who.index()];
+        let mut rows = node.store.rows().clone();
+        apply(&mut rows, writing);
+        let recalled = self.role(who, node.epoch, &rows);
+        let wrong = match (recalled, &node.role) {
+            (Ok(mut recalled), Some(role)) => {
+                let again = recalled.write_down().unwrap_or_default();
+                let other = again.iter().find(|row| !differs_after_a_start(&row.key));
+                other
+                    .map(|row| format!("recalls another {}", row.key))
+                    .or_else(|| unlike(role, &recalled))
+            }
+            (Err(error), _) => Some(error.to_string()),
+            (Ok(_), None) => None,
+        };
+        if let Some(wrong) = wrong {
+            self.broken(|| format!("S10: {who}: {wrong}"));
+        }
+    }
+
+    /// A process of it that starts.
+    fn role(&self, who: Who, epoch: u64, rows: &Rows) -> Result<Role, Unreadable> {
+        let scenario = self.scenario;
+        match who {
+            Who::Executor => {
+                let controller = self.ground.controller(faults(scenario));
+                Role::controller(who, epoch, controller, rows, self.mutant)
+            }
+            Who::Parent => {
+                let two = scenario.two_children;
+                let agent = self.ground.parent(epoch, scenario.planner, two);
+                Role::agent(who, epoch, agent, rows, self.mutant)
+            }
+            _ => {
+                let agent = self.ground.child(who.name(), epoch, scenario.planner);
+                Role::agent(who, epoch, agent, rows, self.mutant)
+            }
+        }
     }
 
     fn crash(&mut self, who: Who, kept: bool, down: Time) {
@@ -471,6 +507,7 @@ impl<'a> Simulation<'a> {
             self.broken(|| format!("the journal of {who}: {error}"));
         }
         self.law.died(who);
+        self.law.trouble(self.now + down);
         self.count("processes killed");
         self.tell(|| format!("{who:<9} is killed"));
         for other in EVERYONE {
@@ -507,7 +544,7 @@ impl<'a> Simulation<'a> {
             return;
         };
         role.handle(now, arrival, way);
-        self.law.handled(role);
+        self.law.handled(now, who, role);
         self.pump(who);
     }
 
@@ -550,8 +587,13 @@ impl<'a> Simulation<'a> {
             if hasty {
                 role.release();
             }
-            node.writing = Some(rows);
             node.writings += 1;
+            let writings = node.writings;
+            let chance = [11, writings, who.index() as u64];
+            if drawn(self.scenario.seed, chance).is_multiple_of(RECALL_EVERY) && !self.lies() {
+                self.recalls(who, &rows);
+            }
+            self.nodes[who.index()].writing = Some(rows);
             if self.begins_writing(who) {
                 return;
             }
@@ -603,8 +645,29 @@ impl<'a> Simulation<'a> {
         if let Some(role) = &mut node.role {
             role.written();
         }
+        if who == Who::Parent {
+            self.owes_nothing();
+        }
         self.count("writings");
         self.pump(who);
+    }
+
+    /// Whether the journal is not what was written, or was not found so: comparing would tell
+    /// nothing of the machines then.
+    fn lies(&self) -> bool {
+        matches!(
+            self.mutant,
+            Some(
+                Mutant::SkipTheJournal
+                    | Mutant::LyingDisk
+                    | Mutant::TornWriting
+                    | Mutant::LoseTheOutbox
+                    | Mutant::ResetNumbers
+                    | Mutant::ForgetTheInbox
+                    | Mutant::NewLineAtEveryStart
+                    | Mutant::LoseAGoal
+            )
+        )
     }
 
     /// Whether the process dies at this point of sending.
@@ -1021,7 +1084,11 @@ impl<'a> Simulation<'a> {
                             answer = agent_core::protocol::Answer::Accepted;
                         }
                         self.tell(|| format!("{by:<9} answers {who}: {answer:?} to {}", seq));
-                        self.law.answered(&instruction, &answer);
+                        if self.law.answered(self.now, &instruction, &answer) {
+                            let id = instruction.id().clone();
+                            let promised = self.now;
+                            self.after(BOUND, Due::Promised { id, promised });
+                        }
                         let by = name(by);
                         let arrival = Arrival::Answered {
                             by,
@@ -1289,6 +1356,7 @@ impl<'a> Simulation<'a> {
             self.tell(|| format!("{observer:<9} sees that {subject} is gone"));
             let there = false;
             let name = name.clone();
+            self.law.sees(observer, name.clone(), there);
             let gone = Input::Neighbour { name, there };
             self.give(observer, Arrival::Input(gone), None);
         }
@@ -1298,6 +1366,7 @@ impl<'a> Simulation<'a> {
                 .role
                 .as_ref()
                 .map_or(0, Role::line);
+            self.law.sees(observer, name.clone(), true);
             self.give(observer, Arrival::Appeared { name, line }, None);
             if is_superior(observer, subject) {
                 self.ask_what_holds(observer, own, subject, 0);
@@ -1313,6 +1382,7 @@ impl<'a> Simulation<'a> {
         }
         if let Some(fault) = what.fault() {
             self.count(fault);
+            self.law.trouble(self.now + what.lasts());
         }
         self.tell(|| format!("--------- {what:?}"));
         let now = self.now;
@@ -1570,19 +1640,33 @@ fn are_neighbours(one: Who, other: Who) -> bool {
     is_superior(one, other) || is_superior(other, one)
 }
 
-/// Whether an agent knows a goal, be it live or ended.
-fn knows(
-    agent: &agent_core::agent::Agent<agent_core::planner::AnyPlanner>,
-    goal: &Symbol,
-    rows: &agent_core::protocol::Rows,
-) -> bool {
-    let _ = agent;
+/// Whether there is anything of a goal in a journal, be it live or ended.
+fn speak_of(rows: &Rows, goal: &Symbol) -> bool {
+    let name = goal.as_str();
     rows.iter().any(|(key, value)| {
-        key.contains(goal.as_str())
-            || value
-                .windows(goal.as_str().len())
-                .any(|part| part == goal.as_str().as_bytes())
+        let is_name = |part: &[u8]| part == name.as_bytes();
+        key.contains(name) || value.windows(name.len()).any(is_name)
     })
+}
+
+/// What a start changes in a journal: the epoch is another, a robot halts, with a number, and what
+/// was observed has been told again.
+fn differs_after_a_start(key: &str) -> bool {
+    ["s/epoch", "m/ticket", "m/running"].contains(&key) || key.starts_with("s/observed/")
+}
+
+/// In what a recalled agent is not as the living one.
+fn unlike(living: &Role, recalled: &Role) -> Option<String> {
+    let (living, recalled) = (living.as_agent()?, recalled.as_agent()?);
+    let (was, is) = (living.counts(), recalled.counts());
+    if was != is {
+        return Some(format!("has {is:?}, and had {was:?}"));
+    }
+    let (was, is) = (living.executing(), recalled.executing());
+    if was != is {
+        return Some(format!("is having {is:?} done, and was {was:?}"));
+    }
+    (living.belief() != recalled.belief()).then(|| "believes something else".to_owned())
 }
 
 fn in_words(message: &Message) -> String {

@@ -128,7 +128,8 @@ impl Store {
 /// A writing rarely takes more changes of a file than this.
 const MOST_CALLS: u64 = 16;
 
-fn apply(to: &mut Rows, rows: &[Row]) {
+/// Makes rows what they are after a writing.
+pub fn apply(to: &mut Rows, rows: &[Row]) {
     for Row { key, value } in rows {
         match value {
             Some(value) => to.insert(key.clone(), value.clone()),
