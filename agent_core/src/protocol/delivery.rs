@@ -156,6 +156,13 @@ pub struct Heard<A> {
     answers: BTreeMap<u64, A>,
 }
 
+impl<A> Heard<A> {
+    /// The epoch and the number of the last message that was applied.
+    pub fn last(&self) -> (u64, u64) {
+        (self.epoch, self.seq)
+    }
+}
+
 impl<A> Default for Inbox<A> {
     fn default() -> Self {
         Self {

@@ -120,6 +120,18 @@ impl Mailboxes {
         }
     }
 
+    /// By receiver, up to where answers have been written down, and whether the last one that came is
+    /// `included` in a writing; instructions first.
+    pub(super) fn settled(&self, included: impl Fn(u64) -> bool) -> Vec<(u64, bool, u64)> {
+        let instructions = self.instructions_out.values();
+        let reports = self.reports_out.values();
+        let of = |settled, answered_in, next| (settled, included(answered_in), next);
+        instructions
+            .map(|s| of(s.settled, s.answered_in, s.outbox.next_seq()))
+            .chain(reports.map(|s| of(s.settled, s.answered_in, s.outbox.next_seq())))
+            .collect()
+    }
+
     pub(super) fn instructions_settled(&self, to: &Symbol) -> u64 {
         self.instructions_out.get(to).map_or(0, |s| s.settled)
     }

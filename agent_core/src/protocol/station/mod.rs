@@ -8,6 +8,7 @@
 mod effect;
 mod mailboxes;
 mod memory;
+mod sameness;
 #[cfg(test)]
 mod tests;
 
