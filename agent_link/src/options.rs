@@ -34,7 +34,7 @@ pub struct LinkOptions {
     /// Zenoh settings (JSON5) for TLS, passwords, access control.
     #[arg(long, value_name = "FILE")]
     pub zenoh_config: Option<PathBuf>,
-    /// Remember in DIR/<robot>/ what must not be lost, and go on from there. Without it, everything
+    /// Remember in `DIR/<robot>/` what must not be lost, and go on from there. Without it, everything
     /// is forgotten when the role ends.
     #[arg(long, value_name = "DIR")]
     pub state: Option<PathBuf>,
