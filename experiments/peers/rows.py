@@ -1,0 +1,29 @@
+"""The six interruptions of the paper's Table 1."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Row:
+    """A drive from `start` to `goal`, interrupted on `interruption`, that ends up at `emergency`.
+
+    What is measured begins there: the emergency is over, and the way to `goal` is to be known.
+    """
+
+    number: int
+    start: str
+    goal: str
+    interruption: str
+    emergency: str
+
+
+ROWS = (
+    Row(1, "n40", "n1", "arc59", "n38"),
+    Row(2, "n40", "n1", "arc59", "n28"),
+    Row(3, "n40", "n1", "arc59", "n29"),
+    Row(4, "n1", "n40", "arc5", "n13"),
+    Row(5, "n1", "n40", "arc5", "n4"),
+    Row(6, "n1", "n40", "arc5", "n12"),
+)
