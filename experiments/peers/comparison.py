@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 from failure import Failure
 from museum import Museum
-from rows import ROWS
+from rows import ROWS, Row
 
 OURS = ("online", "naive")
 THEIRS = ("gtpyhop-choosing", "gtpyhop-routing")
@@ -35,6 +35,8 @@ class Figure:
     upkeep_us: float
     expanded: int
     evaluated: int
+    # The door that has closed meanwhile; only in rows that are not the paper's.
+    closes: str | None = None
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,7 @@ class Route:
 
     row: int
     emergency: str
+    closes: str | None
     goal: str
     planner: str
     route_m: float | None
@@ -86,7 +89,7 @@ class Comparison:
 
 def compare(site: Museum, ours: Mapping[str, Any], theirs: Mapping[str, Any]) -> Comparison:
     """Raises Failure if the two sides have not measured the same."""
-    figures = _figures(ours["replanning"]) + _figures(theirs["measured"])
+    figures = _figures([*ours["replanning"], *ours["doors"], *theirs["measured"]])
     return Comparison(
         sorted(figures, key=_order),
         list(_routes(site, [*ours["routes"], *theirs["routes"]])),
@@ -98,19 +101,27 @@ def _figures(measured: Iterable[Mapping[str, Any]]) -> list[Figure]:
     figures = []
     for one in measured:
         try:
-            figure = Figure(**{field.name: one[field.name] for field in fields(Figure)})
+            names = [field.name for field in fields(Figure) if field.name not in ("row", "closes")]
+            closes = one.get("closes")
+            figure = Figure(row=0, closes=closes, **{name: one[name] for name in names})
         except KeyError as missing:
             raise Failure(
                 f"a measured row has no {missing}; is intermezzo of another version?"
             ) from missing
         if figure.planner not in PLANNERS or figure.level not in LEVELS:
             raise Failure(f"nothing is known of {figure.planner} at level {figure.level}")
-        row = ROWS[figure.row - 1] if 0 < figure.row <= len(ROWS) else None
-        what = (figure.start, figure.goal, figure.interruption, figure.emergency)
-        if row is None or what != (row.start, row.goal, row.interruption, row.emergency):
-            raise Failure(f"row {figure.row} is not {what} on both sides")
-        figures.append(figure)
+        figures.append(replace(figure, row=_row(one).row))
     return figures
+
+
+def _row(one: Mapping[str, Any]) -> Row:
+    """Which row something was reported of: by what was done, not by its number."""
+    names = ("start", "goal", "interruption", "emergency", "closes")
+    for row in ROWS:
+        if all(getattr(row, name) == one.get(name) for name in names):
+            return row
+    said = ", ".join(f"{name}: {one.get(name)}" for name in names)
+    raise Failure(f"only one side has measured this: {said}")
 
 
 def _order(figure: Figure) -> tuple[int, int, int]:
@@ -118,14 +129,14 @@ def _order(figure: Figure) -> tuple[int, int, int]:
 
 
 def _routes(site: Museum, found: Sequence[Mapping[str, Any]]) -> Iterable[Route]:
-    known = {(one["row"], one["planner"]): one["route_m"] for one in found}
+    known = {(_row(one).row, one["planner"]): one["route_m"] for one in found}
     for row in ROWS:
-        shortest = site.shortest_m(row.emergency, row.goal, site.open_at_first)
+        shortest = site.shortest_m(row.emergency, row.goal, site.doors(row.closes))
         if shortest is None:
             raise Failure(f"there is no way from {row.emergency} to {row.goal}")
         for planner in PLANNERS:
-            length = known.get((row.number, planner))
-            yield Route(row.number, row.emergency, row.goal, planner, length, shortest)
+            length = known.get((row.row, planner))
+            yield Route(row.row, row.emergency, row.closes, row.goal, planner, length, shortest)
 
 
 def _remarks(ours: Mapping[str, Any], theirs: Mapping[str, Any]) -> list[str]:

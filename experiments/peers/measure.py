@@ -96,7 +96,7 @@ def _questions(
     site: museum.Museum, row: Row, style: str, domains: dict[tuple[str, str], gtpyhop.Domain]
 ) -> list[Question]:
     """The whole way by areas, then the first of its parts by nodes; and both in one plan."""
-    state = domain.state_at(row.emergency, site.open_at_first)
+    state = domain.state_at(row.emergency, site.doors(row.closes))
     area = Question(row, style, "area", domains["area", style], state, [domain.go(row.goal)])
     node = Question(row, style, "node", domains["node", style], state, plan(area)[:1])
     return [area, node, Question(row, style, "both", domains["both", style], state, area.todo)]
@@ -154,10 +154,8 @@ def _levels(asked: dict[str, Question], times: dict[str, list[float]]) -> list[d
 def _measured(
     question: Question, level: str, times: list[float], work: tuple[int, ...]
 ) -> dict[str, Any]:
-    row = asdict(question.row)
     return {
-        "row": row.pop("number"),
-        **row,
+        **asdict(question.row),
         "level": level,
         "planner": f"gtpyhop-{question.style}",
         **asdict(Summary.of(times)),
@@ -180,12 +178,11 @@ def _route(site: museum.Museum, question: Question) -> dict[str, Any]:
     """How far the robot goes."""
     row = question.row
     steps = [step[1:4] for step in plan(question)]
-    is_open = site.open_at_first
+    is_open = site.doors(row.closes)
     return {
-        "row": row.number,
+        **asdict(row),
         "planner": f"gtpyhop-{question.style}",
         "route_m": site.route_m(row.emergency, row.goal, steps, is_open),
-        "shortest_m": site.shortest_m(row.emergency, row.goal, is_open),
     }
 
 

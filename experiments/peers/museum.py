@@ -43,6 +43,10 @@ class Museum:
     arcs_from: dict[str, list[Arc]] = field(default_factory=dict)
     open_at_first: dict[str, bool] = field(default_factory=dict)
 
+    def doors(self, closed: str | None) -> dict[str, bool]:
+        """Which doors are open when one more has closed."""
+        return {door: is_open and door != closed for door, is_open in self.open_at_first.items()}
+
     def straight_m(self, one: str, other: str) -> float:
         """As the crow flies."""
         return math.dist(self.place_m[one], self.place_m[other])

@@ -53,6 +53,7 @@ def tables(report: Any) -> dict[str, Any]:
         raise Failure("intermezzo's report has no table `replanning`; is it of another version?")
     return {
         "replanning": found["replanning"],
+        "doors": found.get("doors", []),
         "routes": found.get("routes", []),
         "machine": report.get("machine", {}),
     }

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from comparison import LEVELS, OURS, PLANNERS, THEIRS, Comparison, Figure
-from rows import ROWS
+from rows import ROWS, Row
 
 TITLES = {
     "online": "online",
@@ -84,14 +84,14 @@ def _times(comparison: Comparison) -> Table:
     rows = []
     for level in LEVELS:
         for row in ROWS:
-            figures = [comparison.figure(row.number, level, planner) for planner in PLANNERS]
+            figures = [comparison.figure(row.row, level, planner) for planner in PLANNERS]
             # The whole plan goes beside what the agents take until the robot moves.
-            base = figures[0] or comparison.figure(row.number, "total", BASE)
+            base = figures[0] or comparison.figure(row.row, "total", BASE)
             ratios = [_ratio(figure, base) for figure in figures[len(OURS) :]]
             upkeep = base.median_us + base.upkeep_us if base and figures[0] else None
             spreads = [_spread(figure) for figure in figures]
             spreads.insert(1, short(upkeep))
-            rows.append([level, f"{row.start}→{row.goal}", row.emergency, *spreads, *ratios])
+            rows.append([level, f"{row.start}→{row.goal}", _where(row), *spreads, *ratios])
     titles = [TITLES[planner] for planner in PLANNERS]
     titles.insert(1, "+ upkeep")
     return Table(
@@ -100,6 +100,10 @@ def _times(comparison: Comparison) -> Table:
         ["level", "drive", "emergency", *titles, *against],
         rows,
     )
+
+
+def _where(row: Row) -> str:
+    return row.emergency if row.closes is None else f"{row.emergency}, {row.closes} closes"
 
 
 def _spread(figure: Figure | None) -> str:
@@ -117,9 +121,9 @@ def _ratio(figure: Figure | None, base: Figure | None) -> str:
 def _routes(comparison: Comparison) -> Table:
     rows = []
     for row in ROWS:
-        lengths = [comparison.route_m(row.number, planner) for planner in PLANNERS]
-        shortest = comparison.shortest_m(row.number)
-        rows.append([row.emergency, row.goal, *map(short, [shortest, *lengths])])
+        lengths = [comparison.route_m(row.row, planner) for planner in PLANNERS]
+        shortest = comparison.shortest_m(row.row)
+        rows.append([_where(row), row.goal, *map(short, [shortest, *lengths])])
     titles = [TITLES[planner] for planner in PLANNERS]
     return Table("Metres from there to the goal", ["from", "to", "shortest", *titles], rows)
 
@@ -128,9 +132,9 @@ def _work(comparison: Comparison) -> Table:
     rows = []
     for level in LEVELS:
         for row in ROWS:
-            figures = [comparison.figure(row.number, level, planner) for planner in PLANNERS]
+            figures = [comparison.figure(row.row, level, planner) for planner in PLANNERS]
             work = ["–" if one is None else f"{one.expanded} ({one.evaluated})" for one in figures]
-            rows.append([level, f"{row.start}→{row.goal}", row.emergency, *work])
+            rows.append([level, f"{row.start}→{row.goal}", _where(row), *work])
     titles = [TITLES[planner] for planner in PLANNERS]
     return Table(
         "Work: nodes expanded (evaluated); of GTPyhop, tasks decomposed and actions applied "

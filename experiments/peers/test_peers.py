@@ -48,10 +48,15 @@ def reported(planner: str, level: str, number: int = 1, **more: Any) -> dict[str
 
 
 def both_sides(*, routes: Any = ()) -> comparison.Comparison:
-    mine = {"replanning": [reported("online", "total")], "routes": list(routes), "machine": {}}
+    mine = {
+        "replanning": [reported("online", "total")],
+        "doors": [],
+        "routes": list(routes),
+        "machine": {},
+    }
     theirs = {
         "measured": [reported("gtpyhop-choosing", "total", median_us=45.0)],
-        "routes": [{"row": 1, "planner": "gtpyhop-choosing", "route_m": 70.0}],
+        "routes": [reported("gtpyhop-choosing", "", route_m=70.0)],
         "gtpyhop": "2",
         "python": "CPython",
         "repetitions": 1,
@@ -86,6 +91,15 @@ class TheMap(unittest.TestCase):
             self.assertIn(row.interruption, arcs)
             self.assertIn(row.goal, SITE.place_m)
             self.assertIn(row.emergency, SITE.place_m)
+
+    def test_a_door_that_closes_was_on_the_way_and_there_is_another(self) -> None:
+        for row in ROWS:
+            if row.closes is not None:
+                ways = [
+                    SITE.shortest_m(row.emergency, row.goal, SITE.doors(closed))
+                    for closed in (None, row.closes)
+                ]
+                self.assertGreater(ways[1] or 0.0, ways[0] or 0.0, row)
 
     def test_shortest_ways_are_those_found_in_another_way(self) -> None:
         for start in SITE.place_m:
@@ -184,7 +198,7 @@ class Comparing(unittest.TestCase):
         )
 
     def test_lengths_are_beside_the_shortest_that_there_is(self) -> None:
-        compared = both_sides(routes=[{"row": 1, "planner": "online", "route_m": 62.5}])
+        compared = both_sides(routes=[reported("online", "", route_m=62.5)])
         shortest = shortest_by_relaxing("n38")["n1"]
         self.assertAlmostEqual(compared.shortest_m(1), shortest)
         lengths = [compared.route_m(1, planner) for planner in comparison.PLANNERS]
@@ -195,17 +209,17 @@ class Comparing(unittest.TestCase):
         self.assertEqual(
             head,
             "row,start,goal,interruption,emergency,level,planner,"
-            "median_us,p10_us,p90_us,upkeep_us,expanded,evaluated",
+            "median_us,p10_us,p90_us,upkeep_us,expanded,evaluated,closes",
         )
 
     def test_rows_that_are_not_the_same_are_not_compared(self) -> None:
-        mine = {"routes": [], "machine": {}}
+        mine = {"doors": [], "routes": [], "machine": {}}
         theirs = {"measured": [], "routes": []}
         incomplete = reported("online", "total")
         del incomplete["p90_us"]
         wrong = {
-            "is not": reported("online", "total", emergency="n39"),
-            "row 7": {**reported("online", "total"), "row": 7},
+            "n39": reported("online", "total", emergency="n39"),
+            "door9_9": reported("online", "total", closes="door9_9"),
             "p90_us": incomplete,
             "psychic": reported("psychic", "total"),
         }
