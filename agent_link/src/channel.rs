@@ -5,9 +5,10 @@
 //! same answer again. Numbers, and what was received, are the business of the
 //! [`Station`](agent_core::protocol::Station): they outlive the process.
 
+use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::sync::mpsc;
+use tokio::sync::{Notify, mpsc};
 use tokio::task::JoinHandle;
 use zenoh::Session;
 use zenoh::qos::{CongestionControl, Priority};
@@ -43,6 +44,8 @@ struct Outgoing {
 /// Sends to one receiver, in order, until each message is acknowledged.
 pub struct Sender {
     queue: mpsc::UnboundedSender<Outgoing>,
+    /// The receiver is there anew.
+    appeared: Arc<Notify>,
     task: JoinHandle<()>,
 }
 
@@ -56,9 +59,11 @@ impl Sender {
         deliver: impl Fn(Delivery) -> Option<A> + Send + 'static,
     ) -> Self {
         let (queue, mut incoming) = mpsc::unbounded_channel();
+        let appeared = Arc::new(Notify::new());
         let work = Work {
             session: session.clone(),
             key,
+            appeared: appeared.clone(),
         };
         let task = tokio::spawn(async move {
             while let Some(message) = incoming.recv().await {
@@ -74,7 +79,16 @@ impl Sender {
                 }
             }
         });
-        Self { queue, task }
+        Self {
+            queue,
+            appeared,
+            task,
+        }
+    }
+
+    /// The receiver has just appeared: whoever pauses before the next attempt pauses no longer.
+    pub fn hurry(&self) {
+        self.appeared.notify_one();
     }
 
     /// Sends a message after all that was sent before.
@@ -113,6 +127,7 @@ pub fn send_ahead(session: &Session, key: String, text: String) {
 struct Work {
     session: Session,
     key: String,
+    appeared: Arc<Notify>,
 }
 
 impl Work {
@@ -135,8 +150,7 @@ impl Work {
             if attempts == ATTEMPTS_BEFORE_WARNING {
                 tracing::warn!("{} does not take message {seq}: {trouble}", self.key);
             }
-            tokio::time::sleep(back_off).await;
-            back_off = (back_off * 2).min(BACK_OFF.1);
+            back_off = pause(&self.appeared, back_off).await;
         }
     }
 
@@ -166,5 +180,48 @@ impl Work {
             None if answer.seq == Some(seq) => Ok(Some(answer)),
             None => Err("an answer to another message".to_owned()),
         }
+    }
+}
+
+/// Lets `back_off` pass, unless the receiver appears before. Returns how long the next pause is.
+async fn pause(appeared: &Notify, back_off: Duration) -> Duration {
+    tokio::select! {
+        () = tokio::time::sleep(back_off) => (back_off * 2).min(BACK_OFF.1),
+        () = appeared.notified() => BACK_OFF.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_receiver_that_appears_ends_the_pause_also_if_that_has_not_begun() {
+        let appeared = Notify::new();
+        let hour = Duration::from_secs(3600);
+        let patience = Duration::from_secs(30);
+        appeared.notify_one();
+        let next = tokio::time::timeout(patience, pause(&appeared, hour)).await;
+        assert_eq!(next, Ok(BACK_OFF.0));
+        let (next, ()) = tokio::join!(
+            tokio::time::timeout(patience, pause(&appeared, hour)),
+            async { appeared.notify_one() },
+        );
+        assert_eq!(next, Ok(BACK_OFF.0));
+    }
+
+    #[tokio::test]
+    async fn pauses_grow_up_to_the_longest() {
+        let nobody = Notify::new();
+        let mut pauses = vec![BACK_OFF.0 / 50];
+        for _ in 0..8 {
+            pauses.push(pause(&nobody, pauses[pauses.len() - 1]).await);
+        }
+        assert!(
+            pauses
+                .windows(2)
+                .all(|two| two[0] < two[1] || two[1] == BACK_OFF.1)
+        );
+        assert_eq!(pauses.last(), Some(&BACK_OFF.1));
     }
 }

@@ -259,10 +259,12 @@ impl Link {
             self.ask_what_holds(&Arc::from(name));
         }
         let there = self.neighbours.hear(name, epoch, appeared);
-        let name = name.into();
         if appeared {
+            self.hurry(name);
+            let name = name.into();
             return Some((Arrival::Appeared { name, line }, None));
         }
+        let name = name.into();
         let there = there?;
         Some(nobody_waits(Input::Neighbour { name, there }))
     }

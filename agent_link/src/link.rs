@@ -128,6 +128,14 @@ impl Link {
         })
     }
 
+    /// Whoever has just appeared is sent at once what waits for it.
+    pub(crate) fn hurry(&self, name: &str) {
+        let senders = [self.to_executors.get(name), self.to_superiors.get(name)];
+        // Whose key that is nobody has said.
+        let senders = senders.into_iter().chain([self.to_elsewhere.as_ref()]);
+        senders.flatten().for_each(Sender::hurry);
+    }
+
     /// Sends what may go out, for a machine whose memory begins in the epoch `line`. Never waits.
     pub(crate) fn send<L>(
         &mut self,

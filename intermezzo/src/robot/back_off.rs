@@ -4,8 +4,9 @@ use std::time::Duration;
 
 /// Before the first new start.
 const FIRST: Duration = Duration::from_millis(100);
-/// Never longer than this.
-const LONGEST: Duration = Duration::from_secs(5);
+/// Never longer than this. Nobody stops what moves faster than its role is there again, so it is as short as
+/// it can be: a start takes some hundredths of a second of a core.
+const LONGEST: Duration = Duration::from_secs(1);
 /// A process that has run for so long ran well: what ends it then is a new trouble.
 const WELL: Duration = Duration::from_secs(3);
 /// After so many quick ends of a role's own there is no point in another start.
