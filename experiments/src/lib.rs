@@ -5,13 +5,20 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod chart;
+mod drive;
+mod error;
 mod machine;
+mod onlooker;
+mod replanning;
 mod report;
 mod summary;
 mod table;
 
 pub use chart::{Chart, Line};
+pub use error::ExperimentError;
 pub use machine::machine;
+pub use onlooker::Onlooker;
+pub use replanning::{PAPER_MACHINE, PAPER_ROWS, PaperRow, replanning};
 pub use report::{Report, WriteError};
 pub use summary::Summary;
 pub use table::{Cell, Table};

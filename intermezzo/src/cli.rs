@@ -1,5 +1,9 @@
 //! What can be typed.
 
+mod experiment;
+
+pub(crate) use experiment::{ExperimentCommand, ReportOptions};
+
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -29,6 +33,7 @@ Exit status:
   3  no robot is running, or none answers: not reachable, or you are not permitted to ask
   4  `plan`: it is proved that there is no plan
   5  `plan`: no plan was found, and there may be one
+  130  `experiment`: ended by Ctrl-C; what was measured until then is reported
 
 Goals and facts are HDDL: (go n4), (and (show n2) (show n12)), (not (open door3_5))."
 )]
@@ -71,6 +76,9 @@ pub(crate) enum Command {
     /// Look after planning domains.
     #[command(subcommand)]
     Domain(DomainCommand),
+    /// Measure: replanning, its growth with the map, and more. No robot is needed.
+    #[command(subcommand)]
+    Experiment(ExperimentCommand),
     /// One role of a robot, as `up` starts it.
     #[command(subcommand, hide = true)]
     Role(RoleCommand),

@@ -18,6 +18,8 @@ pub enum Exit {
     Unsolvable = 4,
     /// No plan was found, and nobody knows whether there is one.
     Unknown = 5,
+    /// It was ended by Ctrl-C before it was done; what shells say of a program that SIGINT has ended.
+    Interrupted = 130,
 }
 
 impl From<Exit> for ExitCode {

@@ -18,7 +18,7 @@ pub use exit::{Exit, Failure};
 
 use agent_core::protocol::Command as Wish;
 use cli::{Command, DomainCommand, MapCommand, RoleCommand};
-use command::{check, control, demo, goal, plan, scale, secure, status, up, watch};
+use command::{check, control, demo, experiment, goal, plan, scale, secure, status, up, watch};
 
 /// Carries out what was typed, if that needs neither a robot nor anything else that waits. `None`
 /// if it does: then it is for [`run`].
@@ -30,6 +30,7 @@ pub fn run_alone(cli: &Cli) -> Option<Result<Exit, Failure>> {
         Command::Map(MapCommand::Check { file }) => Some(check::map(file)),
         Command::Map(MapCommand::Scale(args)) => Some(scale::run(args)),
         Command::Domain(DomainCommand::Check { dir }) => Some(check::domain(dir)),
+        Command::Experiment(what) => experiment::run_alone(what),
         _ => None,
     }
 }
@@ -59,7 +60,8 @@ pub async fn run(cli: Cli) -> Result<Exit, Failure> {
         | Command::Certs(_)
         | Command::Passwords(_)
         | Command::Map(_)
-        | Command::Domain(_) => Ok(Exit::Done),
+        | Command::Domain(_)
+        | Command::Experiment(_) => Ok(Exit::Done),
     }
 }
 

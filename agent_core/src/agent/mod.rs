@@ -178,6 +178,11 @@ impl<P: Planner> Agent<P> {
         &self.belief
     }
 
+    /// What it plans with.
+    pub fn planner(&self) -> &P {
+        &self.planner
+    }
+
     /// The suspended goals.
     pub fn stack(&self) -> &SuspendedGoalStack {
         &self.stack

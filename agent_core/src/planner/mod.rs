@@ -95,6 +95,9 @@ pub struct Outcome {
     pub expanded: u64,
     /// How many of them to find the best plan; the others were for alternatives to it.
     pub expanded_for_best: u64,
+    /// Nodes whose cost to the end was estimated or worked out anew: those that were met for the first
+    /// time, and those that a change bears on.
+    pub evaluated: u64,
     /// Whether no plan is cheaper than the first, or there is none. If not, the planner has acted
     /// before it knew: planning again goes on from what it knows by now.
     pub proved: bool,

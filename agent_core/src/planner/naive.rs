@@ -170,6 +170,7 @@ impl Search {
                 true => self.expansions_of_best,
                 false => self.expansions,
             },
+            evaluated: self.nodes.len() as u64,
             proved: true,
         })
     }

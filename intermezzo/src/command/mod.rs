@@ -3,6 +3,7 @@
 pub(crate) mod check;
 pub(crate) mod control;
 pub(crate) mod demo;
+pub(crate) mod experiment;
 pub(crate) mod goal;
 pub(crate) mod plan;
 pub(crate) mod scale;

@@ -307,6 +307,7 @@ impl Thinking {
             wanted: BTreeSet::new(),
             expanded: graph.work.expanded - self.before.expanded,
             expanded_for_best: self.expanded_for_best,
+            evaluated: graph.work.evaluated() - self.before.evaluated(),
             proved: self.proved,
         }
     }
@@ -334,6 +335,7 @@ impl Thinking {
                 .collect::<BTreeSet<Fact>>(),
             expanded,
             expanded_for_best: expanded,
+            evaluated: graph.work.evaluated() - self.before.evaluated(),
             proved: true,
         }
     }

@@ -93,6 +93,15 @@ pub(super) struct Work {
     pub expanded: u64,
     pub reevaluated: u64,
     pub repaired: u64,
+    /// Nodes that were met for the first time.
+    pub met: u64,
+}
+
+impl Work {
+    /// How often the cost of a node was estimated or worked out anew.
+    pub fn evaluated(&self) -> u64 {
+        self.met + self.reevaluated + self.repaired
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -265,6 +274,7 @@ impl Graph {
         };
         self.table.insert((list, delta), node);
         self.note_shape(list, delta);
+        self.work.met += 1;
         self.evaluate_leaf(node);
         let node_now = &mut self.nodes[node as usize];
         node_now.v = node_now.rhs;

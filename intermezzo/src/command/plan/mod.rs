@@ -92,7 +92,7 @@ fn has_upper_case(text: &str) -> bool {
 }
 
 /// The first Ctrl-C asks the planner to stop, the second ends the process.
-fn stop_at_ctrl_c() -> Result<Arc<AtomicBool>, Failure> {
+pub(crate) fn stop_at_ctrl_c() -> Result<Arc<AtomicBool>, Failure> {
     use signal_hook::consts::{SIGINT, SIGTERM};
     let stop = Arc::new(AtomicBool::new(false));
     let register = |signal| -> io::Result<()> {
