@@ -18,7 +18,9 @@ pub use exit::{Exit, Failure};
 
 use agent_core::protocol::Command as Wish;
 use cli::{Command, DomainCommand, MapCommand, RoleCommand};
-use command::{check, control, demo, experiment, goal, plan, scale, secure, status, up, watch};
+use command::{
+    check, control, demo, experiment, goal, plan, scale, secure, status, svg, up, watch,
+};
 
 /// Carries out what was typed, if that needs neither a robot nor anything else that waits. `None`
 /// if it does: then it is for [`run`].
@@ -29,6 +31,7 @@ pub fn run_alone(cli: &Cli) -> Option<Result<Exit, Failure>> {
         Command::Passwords(args) => Some(secure::passwords(args)),
         Command::Map(MapCommand::Check { file }) => Some(check::map(file)),
         Command::Map(MapCommand::Scale(args)) => Some(scale::run(args)),
+        Command::Map(MapCommand::Svg(args)) => Some(svg::run(args)),
         Command::Domain(DomainCommand::Check { dir }) => Some(check::domain(dir)),
         Command::Experiment(what) => experiment::run_alone(what),
         _ => None,

@@ -1,6 +1,7 @@
 //! Maps and planning domains: the data, and the code that reads and checks them
 
 mod domain;
+mod drawing;
 mod execution_model;
 mod finding;
 mod fingerprint;
@@ -12,6 +13,7 @@ mod site;
 mod vocabulary;
 
 pub use domain::{Level, check_domain_dir, level_from_texts, read_level};
+pub use drawing::Picture;
 pub use finding::Finding;
 pub use levels::{
     AreaMaps, area_level, area_maps, area_start, node_level, node_start, whole_node_level,

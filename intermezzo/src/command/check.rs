@@ -7,15 +7,20 @@ use maps::{Finding, Site, check_domain_dir};
 use crate::exit::{Exit, Failure};
 use crate::style::{BAD, GOOD};
 
-/// Names everything that is wrong with a map.
-pub(crate) fn map(file: &Path) -> Result<Exit, Failure> {
+/// The map in a file, or all that is wrong with it.
+pub(crate) fn read_map(file: &Path) -> Result<Result<Site, Vec<Finding>>, Failure> {
     if !file.is_file() {
         return Err(
             Failure::bad_input(format_args!("there is no file {}", file.display()))
                 .advice("name a map, such as maps/museum/map.geojson"),
         );
     }
-    Ok(match Site::read(file) {
+    Ok(Site::read(file))
+}
+
+/// Names everything that is wrong with a map.
+pub(crate) fn map(file: &Path) -> Result<Exit, Failure> {
+    Ok(match read_map(file)? {
         Ok(site) => {
             let name = match site.name() {
                 "" => file.display().to_string(),
