@@ -57,12 +57,12 @@ impl Arm {
     }
 
     /// What is not written down.
-    pub fn volatile(&self) -> (bool, bool, bool) {
+    pub fn volatile_parts(&self) -> (bool, bool, bool) {
         (self.stopping, self.halting, self.gone)
     }
 
     /// What it was told that no superior may say.
-    pub fn fault(&self) -> Option<&'static str> {
+    pub fn fault_told(&self) -> Option<&'static str> {
         self.fault
     }
 

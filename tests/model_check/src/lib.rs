@@ -7,12 +7,21 @@
 
 pub mod arm;
 pub mod boss;
+pub mod happen;
 pub mod letter;
+pub mod lives;
 pub mod model;
+pub mod mutant;
+pub mod names;
 pub mod node;
 mod report;
+pub mod role;
+pub mod seen;
 pub mod state;
+pub mod tables;
+mod tell;
 pub mod world;
 
-pub use model::{Budget, Mutant, Protocol};
+pub use model::{Budget, Protocol};
+pub use mutant::Mutant;
 pub use report::{Found, check};

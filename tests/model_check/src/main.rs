@@ -21,12 +21,16 @@ struct Options {
     /// Processes that may die.
     #[arg(long, default_value_t = 1)]
     crashes: u8,
+    /// Compare processes that look the same in all that they do.
+    #[arg(long)]
+    doubt: bool,
     /// Give up after this many seconds.
     #[arg(long)]
     seconds: Option<u64>,
 }
 
 #[expect(clippy::print_stdout, reason = "this is what it is for")]
+#[expect(clippy::print_stderr, reason = "how far it is goes past what it finds")]
 fn main() -> ExitCode {
     let options = Options::parse();
     let budget = Budget {
@@ -34,10 +38,16 @@ fn main() -> ExitCode {
         duplicates: options.duplicates,
         crashes: options.crashes,
     };
-    let protocol = Protocol::new(options.goals, budget, None);
+    let mut protocol = Protocol::new(options.goals, budget, None);
+    if options.doubt {
+        protocol = protocol.doubting();
+    }
     let limit = options.seconds.map(Duration::from_secs);
     let begun = Instant::now();
-    let found = check(&protocol, limit);
+    let found = check(&protocol, limit, |unique| {
+        let seconds = begun.elapsed().as_secs_f64();
+        eprintln!("{seconds:.0} s: {unique} unique, none wrong so far");
+    });
     let seconds = begun.elapsed().as_secs_f64();
     let whole = limit.is_none_or(|limit| begun.elapsed() < limit);
     println!(
@@ -47,6 +57,8 @@ fn main() -> ExitCode {
         found.depth,
         if whole { "" } else { ", not all of them" },
     );
+    let [bosses, arms, letters, worlds] = protocol.tables.sizes();
+    println!("{bosses} superiors, {arms} executors, {letters} letters, {worlds} worlds");
     for story in &found.violations {
         for line in story {
             println!("  {line}");

@@ -2,14 +2,17 @@
 
 use std::sync::Arc;
 
-use agent_core::protocol::{Instruction, Rows};
 use stateright::{Model, Property};
 
 use crate::arm::Arm;
-use crate::boss::{Boss, Bosses, goal};
-use crate::letter::{Letter, Side};
-use crate::node::{Left, Node};
+use crate::boss::{Boss, Bosses};
+use crate::happen::{Left, Rules};
+use crate::letter::Side;
+use crate::lives::Cue;
+use crate::mutant::Mutant;
+use crate::seen::{Kind, Stamp};
 use crate::state::State;
+use crate::tables::Tables;
 
 /// How often something may go wrong.
 #[derive(Clone, Copy, Debug, Default, Eq, Hash, PartialEq)]
@@ -22,17 +25,6 @@ pub struct Budget {
     pub crashes: u8,
 }
 
-/// A mistake on purpose, which must be found.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Mutant {
-    /// What depends on a writing leaves before it.
-    Hasty,
-    /// An answer that something is over does not say how.
-    NoOutcome,
-    /// After a restart nobody knows what was applied.
-    NoInbox,
-}
-
 /// One superior, one executor, and a network that does what it likes within a budget.
 #[derive(Clone, Debug)]
 pub struct Protocol {
@@ -40,17 +32,16 @@ pub struct Protocol {
     pub goals: usize,
     /// What may go wrong.
     pub budget: Budget,
-    /// What is wrong on purpose.
-    pub mutant: Option<Mutant>,
-    bosses: Bosses,
+    /// What has been found out about it.
+    pub tables: Arc<Tables>,
 }
 
-/// Something that happens.
-#[derive(Clone, Debug, Eq, PartialEq)]
+/// Something that happens. Letters are meant by their place on the wire.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Step {
     /// A user asks for that goal.
     Ask(usize),
-    /// The letter of that place on the wire arrives.
+    /// That letter arrives.
     Deliver(usize),
     /// It is lost.
     Lose(usize),
@@ -64,178 +55,190 @@ pub enum Step {
     Finish,
     /// The executor hears what the world says.
     Sense,
-    /// That one hears of its neighbour's presence.
-    Notice(Side),
+    /// The executor hears of its superior's presence.
+    Notice,
     /// That one dies and is started again.
     Crash(Side, Left),
 }
 
+const SIDES: [Side; 2] = [Side::Boss, Side::Arm];
+
 impl Protocol {
     /// That many goals, with those faults.
     pub fn new(goals: usize, budget: Budget, mutant: Option<Mutant>) -> Self {
+        let rules = Rules {
+            bosses: Bosses::new(goals),
+            mutant,
+        };
         Self {
             goals,
             budget,
-            mutant,
-            bosses: Bosses::new(goals),
+            tables: Arc::new(Tables::new(rules, goals)),
         }
     }
 
-    /// A superior that has just started.
-    pub fn boss(&self, epoch: u64) -> Boss {
-        self.bosses.make(epoch)
+    /// With every process that looks like another compared with it in all that it does.
+    pub fn doubting(mut self) -> Self {
+        let rules = self.tables.rules.clone();
+        let mut tables = Tables::new(rules, self.goals);
+        tables.doubts = true;
+        self.tables = Arc::new(tables);
+        self
     }
 
     /// What happens without anything going wrong.
-    fn steps(&self, state: &State, steps: &mut Vec<Step>) {
-        let unasked = (0..self.goals).filter(|number| !state.asked.contains(number));
-        steps.extend(unasked.map(Step::Ask));
-        let arrives = |at: &usize| !comes_too_early(state, *at);
-        steps.extend((0..state.wire.len()).filter(arrives).map(Step::Deliver));
-        for side in [Side::Boss, Side::Arm] {
-            if state.is_writing(side) {
-                steps.push(Step::Written(side));
+    fn steps(&self, state: &State, mut step: impl FnMut(Step)) {
+        let tables = &*self.tables;
+        let asked = |number: &usize| state.asked & 1 << number == 0;
+        (0..self.goals)
+            .filter(asked)
+            .map(Step::Ask)
+            .for_each(&mut step);
+        each(state, |place, letter| {
+            if !self.comes_too_early(state, letter) {
+                step(Step::Deliver(place));
             }
-            if !state.notices[side as usize].is_empty() {
-                steps.push(Step::Notice(side));
+        });
+        for side in SIDES {
+            if state.seen(tables, side).is_writing {
+                step(Step::Written(side));
             }
-            if repeats(state, side) {
-                steps.push(Step::Repeat(side));
+            if self.repeats(state, side) {
+                step(Step::Repeat(side));
             }
         }
-        if state.world.doing.is_some() {
-            steps.push(Step::Finish);
+        if state.notices > 0 {
+            step(Step::Notice);
         }
-        if !state.world.says.is_empty() {
-            steps.push(Step::Sense);
+        let world = tables.world(state.world);
+        if world.doing.is_some() {
+            step(Step::Finish);
+        }
+        if !world.says.is_empty() {
+            step(Step::Sense);
         }
     }
 
-    fn crash(&self, state: &mut State, side: Side, left: Left) {
-        match side {
-            Side::Boss => {
-                let mut boss = (*state.boss).clone();
-                if let Left::All(sent) = left {
-                    boss.written();
-                    let mut effects = boss.effects(false);
-                    effects.truncate(sent);
-                    state.boss_says(effects);
-                }
-                let epoch = boss.epoch + 1;
-                let disk = self.found(boss.disk);
-                match Node::start("boss", epoch, self.boss(epoch), disk) {
-                    Ok(boss) => state.boss = Arc::new(boss),
-                    Err(error) => state.broken(error.to_string()),
-                }
-                // Whoever was not answered asks again.
-                state.asked = state.acked.clone();
-            }
-            Side::Arm => {
-                let mut arm = (*state.arm).clone();
-                if let Left::All(sent) = left {
-                    arm.written();
-                    let mut effects = arm.effects(false);
-                    effects.truncate(sent);
-                    state.arm_says(effects);
-                }
-                let epoch = arm.epoch + 1;
-                let disk = self.found(arm.disk);
-                match Node::start("arm", epoch, Arm::new(), disk) {
-                    Ok(arm) => state.arm = Arc::new(arm),
-                    Err(error) => state.broken(error.to_string()),
-                }
-                state.world.says.clear();
-            }
-        }
-        // Answers to a process that is no more.
-        let kept = |letter: &Letter| !matches!(letter, Letter::Response { to, .. } if *to == side);
-        state.wire.retain(|_, (letter, _)| kept(letter));
-        state.pump(self, side);
-        // Whoever starts sees its neighbour at once, and the superior its executor, since that makes no
-        // difference to what either does. When the executor misses its superior does.
-        state.notices[side as usize] = [true].into();
-        state.notice(side);
-        state.pump(self, side);
-        state.notices[side.other() as usize].extend([false, true]);
-        if side == Side::Arm {
-            state.notice(Side::Boss);
-            state.notice(Side::Boss);
-            state.pump(self, Side::Boss);
-        }
-    }
-
-    fn found(&self, mut disk: Rows) -> Rows {
-        if self.mutant == Some(Mutant::NoInbox) {
-            disk.retain(|key, _| !key.starts_with("s/in/"));
-        }
-        disk
-    }
-
-    /// In words, what a step does.
-    pub fn tell(&self, state: &State, step: &Step) -> String {
-        let letter = |at: usize| {
-            let mut letters = state.wire.values();
-            letters
-                .nth(at)
-                .map(|(letter, _)| letter.to_string())
-                .unwrap_or_default()
+    /// Whether the first message is neither under way nor answered. A repetition although it is on its
+    /// way is a duplicate.
+    fn repeats(&self, state: &State, side: Side) -> bool {
+        let tables = &*self.tables;
+        let Some((first, seq)) = state.seen(tables, side).first else {
+            return false;
         };
-        match step {
-            Step::Ask(number) => format!("a user asks for {}", goal(*number)),
-            Step::Deliver(at) => format!("arrives: {}", letter(*at)),
-            Step::Lose(at) => format!("IS LOST: {}", letter(*at)),
-            Step::Duplicate(at) => format!("IS DOUBLED: {}", letter(*at)),
-            Step::Repeat(side) => format!("the {} repeats what is not answered", side.name()),
-            Step::Written(side) => format!("the {}'s disk has it", side.name()),
-            Step::Finish => format!(
-                "the world has done {}",
-                state
-                    .world
-                    .doing
-                    .as_ref()
-                    .map(|(.., a)| a.to_string())
-                    .unwrap_or_default()
-            ),
-            Step::Sense => format!("the arm hears {:?}", state.world.says.front()),
-            Step::Notice(side) => format!(
-                "the {} hears that the {} is {}",
-                side.name(),
-                side.other().name(),
-                match state.notices[*side as usize].front() {
-                    Some(false) => "gone",
-                    _ => "there",
-                }
-            ),
-            Step::Crash(side, Left::Before) => {
-                format!(
-                    "THE {} DIES and starts again from what was written before",
-                    side.name()
-                )
-            }
-            Step::Crash(side, Left::All(sent)) => format!(
-                "THE {} DIES after a writing, when {sent} effects of it had got out, and starts again",
-                side.name()
-            ),
+        if state.seen(tables, side.other()).is_busy {
+            return false;
         }
+        !state.wire.iter().any(|letter| {
+            let stamp = tables.stamp(*letter);
+            *letter == first || stamp.kind == Kind::Response(side) && stamp.seq == seq
+        })
+    }
+
+    /// Whether a letter resumes something while the executor misses its superior. It would be answered by
+    /// a report of suspension, and resumed again, without end until the superior is seen: that is bounded
+    /// by time, which there is none of here.
+    fn comes_too_early(&self, state: &State, letter: u32) -> bool {
+        let resumes = Kind::Instruction { resumes: true };
+        state.notices % 2 == 1 && self.tables.stamp(letter).kind == resumes
+    }
+
+    /// L1: where nothing can happen any more but a fault, all goals are done and nothing is left.
+    fn ends(&self, state: &State) -> bool {
+        let mut goes_on = state.broken.is_some();
+        self.steps(state, |_| goes_on = true);
+        if goes_on {
+            return true;
+        }
+        let tables = &*self.tables;
+        let all = u8::MAX >> (8 - self.goals);
+        let boss = state.seen(tables, Side::Boss);
+        let arm = state.seen(tables, Side::Arm);
+        let done = tables.world(state.world).effects.len() == self.goals;
+        state.acked == all && boss.ended == all && done && boss.is_idle && arm.is_idle
+    }
+
+    fn faults(&self, state: &State, mut step: impl FnMut(Step)) {
+        let tables = &*self.tables;
+        each(state, |place, letter| {
+            let kind = tables.stamp(letter).kind;
+            // What is repeated until it is answered is, if it is lost and repeated, as if it had been
+            // late. So it need not be lost.
+            let is_repeated = matches!(kind, Kind::Instruction { .. } | Kind::Report);
+            if state.left.losses > 0 && !is_repeated {
+                step(Step::Lose(place));
+            }
+            // The second of two answers is of no interest to anybody.
+            if state.left.duplicates > 0 && !matches!(kind, Kind::Response(_)) {
+                step(Step::Duplicate(place));
+            }
+        });
+        if state.left.crashes > 0 {
+            for side in SIDES {
+                step(Step::Crash(side, Left::Before));
+                if !state.seen(tables, side).is_writing {
+                    continue;
+                }
+                let effects = match side {
+                    Side::Boss => tables.released::<Boss>(state.boss),
+                    Side::Arm => tables.released::<Arm>(state.arm),
+                };
+                for sent in 0..=effects {
+                    step(Step::Crash(side, Left::All(sent)));
+                }
+            }
+        }
+    }
+
+    fn take(&self, state: &mut State, step: Step) {
+        let tables = &*self.tables;
+        match step {
+            Step::Ask(number) => {
+                state.asked |= 1 << number;
+                state.happens(tables, Side::Boss, Cue::Ask(number));
+            }
+            Step::Deliver(place) => {
+                let letter = state.wire.remove(place);
+                let Stamp { kind, .. } = *tables.stamp(letter);
+                state.happens(tables, kind.to(), Cue::Arrives(letter));
+            }
+            Step::Lose(place) => {
+                state.left.losses -= 1;
+                state.wire.remove(place);
+            }
+            Step::Duplicate(place) => {
+                state.left.duplicates -= 1;
+                let letter = state.wire[place];
+                state.wire.insert(place, letter);
+            }
+            Step::Repeat(side) => {
+                if let Some((first, _)) = state.seen(tables, side).first {
+                    state.post(tables, first);
+                }
+            }
+            Step::Written(side) => state.happens(tables, side, Cue::Written),
+            Step::Finish => state.finish(tables),
+            Step::Sense => state.sense(tables),
+            Step::Notice => state.notice(tables),
+            Step::Crash(side, left) => {
+                state.left.crashes -= 1;
+                state.crash(tables, side, Cue::Dies(left));
+            }
+        }
+        state.sweep(tables);
+        state.look(tables);
     }
 }
 
-/// Whether the first message is neither under way nor answered. A repetition although it is on its way
-/// is a duplicate.
-fn repeats(state: &State, side: Side) -> bool {
-    let (first, busy) = match side {
-        Side::Boss => (state.boss.queue.front(), state.arm.station.held() > 0),
-        Side::Arm => (state.arm.queue.front(), state.boss.station.held() > 0),
-    };
-    let Some(first) = first.filter(|_| !busy) else {
-        return false;
-    };
-    let mut letters = state.wire.values().map(|(letter, _)| &**letter);
-    !letters.any(|letter| {
-        letter == first
-            || matches!(letter, Letter::Response { to, .. } if *to == side)
-                && letter.seq() == first.seq()
-    })
+/// Every different letter on the wire, with its place.
+fn each(state: &State, mut look: impl FnMut(usize, u32)) {
+    let mut last = None;
+    for (place, letter) in state.wire.iter().enumerate() {
+        if last != Some(letter) {
+            look(place, *letter);
+        }
+        last = Some(letter);
+    }
 }
 
 impl Model for Protocol {
@@ -243,80 +246,19 @@ impl Model for Protocol {
     type Action = Step;
 
     fn init_states(&self) -> Vec<State> {
-        let boss = Node::start("boss", 1, self.boss(1), Rows::new());
-        let arm = Node::start("arm", 1, Arm::new(), Rows::new());
-        let (boss, arm) = (boss.expect("an empty disk"), arm.expect("an empty disk"));
-        vec![State::first(self, boss, arm)]
+        vec![State::first(&self.tables, self.budget)]
     }
 
     fn actions(&self, state: &State, steps: &mut Vec<Step>) {
-        if state.broken.is_some() {
-            return;
-        }
-        self.steps(state, steps);
-        let letters = state.wire.len();
-        if state.left.losses > 0 {
-            let lost = |at: &usize| !is_request(state, *at);
-            steps.extend((0..letters).filter(lost).map(Step::Lose));
-        }
-        if state.left.duplicates > 0 {
-            let doubled = |at: &usize| !is_response(state, *at);
-            steps.extend((0..letters).filter(doubled).map(Step::Duplicate));
-        }
-        if state.left.crashes > 0 {
-            for side in [Side::Boss, Side::Arm] {
-                steps.push(Step::Crash(side, Left::Before));
-                if !state.is_writing(side) {
-                    continue;
-                }
-                let effects = match side {
-                    Side::Boss => released(&state.boss),
-                    Side::Arm => released(&state.arm),
-                };
-                steps.extend((0..=effects).map(|sent| Step::Crash(side, Left::All(sent))));
-            }
+        if state.broken.is_none() {
+            self.steps(state, |step| steps.push(step));
+            self.faults(state, |step| steps.push(step));
         }
     }
 
     fn next_state(&self, last: &State, step: Step) -> Option<State> {
         let mut state = last.clone();
-        let at = |at: usize| last.wire.iter().nth(at);
-        match step {
-            Step::Ask(number) => state.ask(self, number),
-            Step::Deliver(place) => {
-                let (key, (letter, _)) = at(place)?;
-                take_off(&mut state, key);
-                state.deliver(self, letter);
-            }
-            Step::Lose(place) => {
-                state.left.losses -= 1;
-                take_off(&mut state, at(place)?.0);
-            }
-            Step::Duplicate(place) => {
-                state.left.duplicates -= 1;
-                state.wire.get_mut(at(place)?.0)?.1 += 1;
-            }
-            Step::Repeat(side) => {
-                let first = match side {
-                    Side::Boss => last.boss.queue.front(),
-                    Side::Arm => last.arm.queue.front(),
-                };
-                state.post(first.cloned());
-            }
-            Step::Written(side) => state.written(self, side),
-            Step::Finish => state.finish(),
-            Step::Sense => state.sense(self),
-            Step::Notice(side) => {
-                state.notice(side);
-                state.pump(self, side);
-            }
-            Step::Crash(side, left) => {
-                state.left.crashes -= 1;
-                self.crash(&mut state, side, left);
-            }
-        }
-        state.sweep();
-        state.stamp(self, Some(last));
+        self.take(&mut state, step);
         Some(state)
     }
 
@@ -326,74 +268,8 @@ impl Model for Protocol {
                 state.broken.is_none()
             }),
             Property::always("every acknowledged goal ends", |protocol: &Self, state| {
-                ends(protocol, state)
+                protocol.ends(state)
             }),
         ]
     }
-}
-
-/// L1: where nothing can happen any more but a fault, all goals are done and nothing is left.
-fn ends(protocol: &Protocol, state: &State) -> bool {
-    let mut steps = Vec::new();
-    protocol.steps(state, &mut steps);
-    if !steps.is_empty() || state.broken.is_some() {
-        return true;
-    }
-    let boss = state.boss.station.machine();
-    let all = (0..protocol.goals)
-        .all(|number| state.acked.contains(&number) && boss.ended_goal(&goal(number)).is_some());
-    let done = state.world.effects.len() == protocol.goals;
-    let idle = boss.counts().values().all(|count| *count == 0);
-    all && done && idle && state.arm.station.machine().is_empty()
-}
-
-/// Whether a letter is repeated until it is answered. If such a one is lost and repeated it is as if it had
-/// been late, so it need not be lost here.
-fn is_request(state: &State, at: usize) -> bool {
-    let mut letters = state.wire.values();
-    letters
-        .nth(at)
-        .is_some_and(|(letter, _)| matches!(**letter, Letter::Instruction(_) | Letter::Report(_)))
-}
-
-/// Whether a letter is an answer. The second of two is of no interest to anybody.
-fn is_response(state: &State, at: usize) -> bool {
-    let mut letters = state.wire.values();
-    letters
-        .nth(at)
-        .is_some_and(|(letter, _)| matches!(**letter, Letter::Response { .. }))
-}
-
-/// Whether a letter resumes something while the executor misses its superior. It would be answered by
-/// a report of suspension, and resumed again, without end until the superior is seen: that is bounded
-/// by time, which there is none of here.
-fn comes_too_early(state: &State, at: usize) -> bool {
-    if state.notices[Side::Arm as usize].len() != 1 {
-        return false;
-    }
-    let mut letters = state.wire.values();
-    letters.nth(at).is_some_and(|(letter, _)| match &**letter {
-        Letter::Instruction(message) => matches!(message.body, Instruction::Resume { .. }),
-        _ => false,
-    })
-}
-
-fn take_off(state: &mut State, key: &str) {
-    if let Some((_, count)) = state.wire.get_mut(key) {
-        *count -= 1;
-        if *count == 0 {
-            state.wire.remove(key);
-        }
-    }
-}
-
-/// How many effects wait for the writing that is under way.
-fn released<M>(node: &Node<M>) -> usize
-where
-    M: agent_core::protocol::Durable + Clone + std::fmt::Debug,
-    M::Out: Clone + std::fmt::Debug,
-{
-    let mut node = node.clone();
-    node.written();
-    node.effects(false).len().saturating_sub(1)
 }

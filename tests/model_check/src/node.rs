@@ -2,49 +2,36 @@
 
 use std::collections::VecDeque;
 use std::fmt::Debug;
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{Hash, Hasher};
+use std::sync::Arc;
 
 use agent_core::model::Time;
-use agent_core::protocol::{Arrival, Durable, Effect, Input, Row, Rows, Station, Unreadable};
+use agent_core::protocol::{Arrival, Effect, Input, Row, Rows, Station, Unreadable};
+use siphasher::sip128::{Hasher128, SipHasher13};
 
 use crate::letter::{Letter, Way};
+use crate::role::Role;
 
 /// A process: all but the disk is gone when it dies.
 #[derive(Clone, Debug)]
-pub struct Node<M: Durable>
-where
-    M::Out: Clone + Debug,
-{
+pub struct Node<M: Role> {
     /// What it is.
     pub station: Station<M, Way>,
     /// Of its start.
     pub epoch: u64,
     /// What has been written.
-    pub disk: Rows,
+    pub disk: Arc<Rows>,
     /// What is being written.
     pub flight: Option<Vec<Row>>,
     /// What is to be sent to its neighbour; the first is under way.
     pub queue: VecDeque<Letter>,
 }
 
-/// What a crash in the middle of a writing leaves.
-#[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
-pub enum Left {
-    /// What had been written before.
-    Before,
-    /// All of it, and that many of the effects that waited for it got out.
-    All(usize),
-}
-
-impl<M> Node<M>
-where
-    M: Durable + Clone + Debug,
-    M::Out: Clone + Debug,
-{
-    /// That process, on that disk.
-    pub fn start(name: &str, epoch: u64, machine: M, disk: Rows) -> Result<Self, Unreadable> {
+impl<M: Role> Node<M> {
+    /// That machine in its process, on that disk.
+    pub fn start(epoch: u64, machine: M, disk: Arc<Rows>) -> Result<Self, Unreadable> {
         Ok(Self {
-            station: Station::recall(name.into(), epoch, machine, &disk)?,
+            station: Station::recall(M::SIDE.name().into(), epoch, machine, &disk)?,
             epoch,
             disk,
             flight: None,
@@ -77,33 +64,53 @@ where
 
     /// What is being written is on the disk.
     pub fn written(&mut self) {
-        apply(&mut self.disk, self.flight.take().unwrap_or_default());
+        if let Some(flight) = self.flight.take() {
+            apply(Arc::make_mut(&mut self.disk), flight);
+        }
         self.station.written();
     }
 
+    /// The disk if all that is known now were written down.
+    pub fn disk_to_be(&self) -> Rows {
+        let mut disk = (*self.disk).clone();
+        apply(&mut disk, self.flight.clone().unwrap_or_default());
+        apply(&mut disk, self.station.sameness().0);
+        disk
+    }
+
     /// The fingerprint of all that matters for what it does next.
-    pub fn print(&self, volatile: &impl Hash) -> u64 {
+    pub fn print(&self) -> u128 {
         let (rows, words) = self.station.sameness();
-        let mut now = self.disk.clone();
+        // What observers are told is not looked at, but it is written down, too.
+        let told = rows.iter().any(|row| !matters(&row.key));
+        let mut now = (*self.disk).clone();
         apply(&mut now, self.flight.clone().unwrap_or_default());
         apply(&mut now, rows);
-        let mut hasher = DefaultHasher::new();
-        for row in self.disk.iter().filter(|(key, _)| matters(key)) {
-            row.hash(&mut hasher);
-        }
+        let mut hasher = SipHasher13::new();
+        hash_rows(&self.disk, &mut hasher);
         let flight = self.flight.iter().flatten();
         self.flight.is_some().hash(&mut hasher);
         for row in flight.filter(|row| matters(&row.key)) {
             (&row.key, &row.value).hash(&mut hasher);
         }
-        for row in now.iter().filter(|(key, _)| matters(key)) {
-            row.hash(&mut hasher);
-        }
+        hash_rows(&now, &mut hasher);
         words.hash(&mut hasher);
         format!("{:?}", self.queue).hash(&mut hasher);
-        (self.epoch, volatile).hash(&mut hasher);
-        hasher.finish()
+        (told, self.epoch, self.station.machine().volatile()).hash(&mut hasher);
+        hasher.finish128().as_u128()
     }
+}
+
+/// The fingerprint of a disk.
+pub fn disk_print(disk: &Rows) -> u128 {
+    let mut hasher = SipHasher13::new();
+    hash_rows(disk, &mut hasher);
+    hasher.finish128().as_u128()
+}
+
+fn hash_rows(rows: &Rows, hasher: &mut impl Hasher) {
+    let rows: Vec<_> = rows.iter().filter(|(key, _)| matters(key)).collect();
+    rows.hash(hasher);
 }
 
 /// Whether a row is more than what observers are told.
@@ -112,7 +119,7 @@ fn matters(key: &str) -> bool {
 }
 
 /// Puts rows on a disk.
-pub fn apply(disk: &mut Rows, rows: Vec<Row>) {
+fn apply(disk: &mut Rows, rows: Vec<Row>) {
     for Row { key, value } in rows {
         match value {
             Some(value) => disk.insert(key, value),

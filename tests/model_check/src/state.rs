@@ -1,450 +1,240 @@
-//! Everything at one moment.
+//! Everything at one moment, by numbers.
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
-use std::hash::{DefaultHasher, Hash, Hasher};
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
-
-use agent_core::protocol::{
-    ActionId, Answer, Arrival, Effect, Heard, Input, Instruction, Response, Rows, read_row,
-};
+use smallvec::SmallVec;
 
 use crate::arm::Arm;
-use crate::boss::{Boss, goal, knows};
-use crate::letter::{Letter, Side, Way};
-use crate::model::{Budget, Mutant, Protocol};
-use crate::node::Node;
-use crate::world::{Motor, World};
+use crate::boss::{Boss, goal};
+use crate::letter::Side;
+use crate::lives::{Cue, Then};
+use crate::model::Budget;
+use crate::seen::{Kind, Seen, Stamp};
+use crate::tables::{Tables, Word};
 
-/// Everything at one moment. Two moments are the same if their fingerprints are.
-#[derive(Clone, Debug)]
+/// Everything at one moment.
+#[derive(Clone, Debug, Eq, Hash, PartialEq)]
 pub struct State {
-    /// The superior.
-    pub boss: Arc<Node<Boss>>,
-    /// The executor.
-    pub arm: Arc<Node<Arm>>,
+    /// What the superior is.
+    pub boss: u32,
+    /// What the executor is.
+    pub arm: u32,
     /// What really happens.
-    pub world: World,
-    /// What is on the wire, in no order, and how often.
-    pub wire: BTreeMap<String, (Arc<Letter>, u8)>,
-    /// What the superior and the executor are to hear of each other's being there, in order: whether
-    /// the neighbour is there now.
-    pub notices: [VecDeque<bool>; 2],
-    /// Goals that were asked for and not answered, since the superior's last start.
-    pub asked: BTreeSet<usize>,
+    pub world: u32,
+    /// What is on the wire, in order of numbers; twice what will arrive twice.
+    pub wire: SmallVec<[u32; 8]>,
+    /// How often the executor is still to hear of its superior's going and coming. An odd number of
+    /// times: it misses it.
+    pub notices: u8,
+    /// Goals that were asked for and not answered since the superior's last start, or acknowledged.
+    pub asked: u8,
     /// Goals that were acknowledged.
-    pub acked: BTreeSet<usize>,
+    pub acked: u8,
     /// Executions of which it was acknowledged that they will not be resumed.
-    pub cleared: BTreeSet<ActionId>,
+    pub cleared: u64,
     /// What may still go wrong.
     pub left: Budget,
     /// What must not be and is.
-    pub broken: Option<String>,
-    boss_print: u64,
-    arm_print: u64,
-    print: u64,
+    pub broken: Option<u32>,
 }
-
-impl Hash for State {
-    fn hash<H: Hasher>(&self, hasher: &mut H) {
-        hasher.write_u64(self.print);
-    }
-}
-
-impl PartialEq for State {
-    fn eq(&self, other: &Self) -> bool {
-        self.print == other.print
-    }
-}
-
-impl Eq for State {}
 
 impl State {
     /// Both have started, and nothing has been asked.
-    pub fn first(protocol: &Protocol, boss: Node<Boss>, arm: Node<Arm>) -> Self {
+    pub fn first(tables: &Tables, budget: Budget) -> Self {
+        let (boss, arm) = (tables.first::<Boss>(), tables.first::<Arm>());
         let mut state = Self {
-            boss: Arc::new(boss),
-            arm: Arc::new(arm),
-            world: World::default(),
-            wire: BTreeMap::new(),
-            notices: [VecDeque::from([true]), VecDeque::from([true])],
-            asked: BTreeSet::new(),
-            acked: BTreeSet::new(),
-            cleared: BTreeSet::new(),
-            left: protocol.budget,
+            boss: boss.next,
+            arm: arm.next,
+            world: tables.first_world(),
+            wire: SmallVec::new(),
+            notices: 0,
+            asked: 0,
+            acked: 0,
+            cleared: 0,
+            left: budget,
             broken: None,
-            boss_print: 0,
-            arm_print: 0,
-            print: 0,
         };
-        for side in [Side::Boss, Side::Arm] {
-            state.notice(side);
-            state.pump(protocol, side);
-            while state.is_writing(side) {
-                state.written(protocol, side);
+        state.said(tables, Side::Boss, boss.said);
+        state.said(tables, Side::Arm, arm.said);
+        loop {
+            if state.seen(tables, Side::Boss).is_writing {
+                state.happens(tables, Side::Boss, Cue::Written);
+            } else if state.seen(tables, Side::Arm).is_writing {
+                state.happens(tables, Side::Arm, Cue::Written);
+            } else if !tables.world(state.world).says.is_empty() {
+                state.sense(tables);
+            } else {
+                break;
             }
         }
-        while !state.world.says.is_empty() {
-            state.sense(protocol);
-        }
-        while state.is_writing(Side::Arm) {
-            state.written(protocol, Side::Arm);
-        }
-        state.stamp(protocol, None);
+        state.look(tables);
         state
     }
 
-    /// Whether that one is writing.
-    pub fn is_writing(&self, side: Side) -> bool {
+    /// What is looked at of that one.
+    pub fn seen<'a>(&self, tables: &'a Tables, side: Side) -> &'a Seen {
         match side {
-            Side::Boss => self.boss.flight.is_some(),
-            Side::Arm => self.arm.flight.is_some(),
+            Side::Boss => tables.seen(side, self.boss),
+            Side::Arm => tables.seen(side, self.arm),
         }
     }
 
     /// Something must not be.
-    pub fn broken(&mut self, what: impl Into<String>) {
-        self.broken.get_or_insert(what.into());
+    pub fn broken(&mut self, tables: &Tables, what: &str) {
+        if self.broken.is_none() {
+            self.broken = Some(tables.fault(what));
+        }
+    }
+
+    /// Something happens to one of the two.
+    pub fn happens(&mut self, tables: &Tables, side: Side, cue: Cue) {
+        let Then { next, said } = match side {
+            Side::Boss => tables.after::<Boss>(self.boss, cue),
+            Side::Arm => tables.after::<Arm>(self.arm, cue),
+        };
+        match side {
+            Side::Boss => self.boss = next,
+            Side::Arm => self.arm = next,
+        }
+        self.said(tables, side, said);
+    }
+
+    /// That is said.
+    fn said(&mut self, tables: &Tables, side: Side, said: u32) {
+        for word in tables.words(said) {
+            match *word {
+                Word::Letter(letter) => self.post(tables, letter),
+                Word::Acknowledged(number) => self.acked |= 1 << number,
+                Word::Motor(motor, begins) => {
+                    if begins.is_some_and(|id| self.cleared & bit(id) != 0) {
+                        self.broken(tables, "S5: what was cleared starts");
+                    }
+                    let (world, busy) = tables.obey(self.world, motor);
+                    self.world = world;
+                    if busy {
+                        self.broken(tables, "S3: two actions at once");
+                    }
+                }
+                Word::Cleared(id) => self.cleared |= bit(id),
+                Word::Died => self.died(tables, side),
+                Word::Broken(what) => {
+                    self.broken.get_or_insert(what);
+                }
+            }
+        }
+    }
+
+    /// What died with a process.
+    fn died(&mut self, tables: &Tables, side: Side) {
+        match side {
+            // Whoever was not answered asks again.
+            Side::Boss => self.asked = self.acked,
+            Side::Arm => self.world = tables.silence(self.world),
+        }
+        // Answers to a process that is no more.
+        let kept = |letter: &mut u32| tables.stamp(*letter).kind != Kind::Response(side);
+        self.wire.retain(kept);
+    }
+
+    /// One of the two dies and starts again.
+    pub fn crash(&mut self, tables: &Tables, side: Side, cue: Cue) {
+        self.happens(tables, side, cue);
+        // It has seen its neighbour at once, and the superior sees its executor at once, since that makes
+        // no difference to what either does. When the executor misses its superior does.
+        match side {
+            Side::Boss => self.notices += 2,
+            Side::Arm => {
+                self.notices = 0;
+                self.happens(tables, Side::Boss, Cue::Again);
+            }
+        }
+    }
+
+    /// The executor hears what the world has to say.
+    pub fn sense(&mut self, tables: &Tables) {
+        let (world, sensor) = tables.says(self.world);
+        self.world = world;
+        self.happens(tables, Side::Arm, Cue::Hears(sensor));
+    }
+
+    /// The executor hears of its superior.
+    pub fn notice(&mut self, tables: &Tables) {
+        let there = self.notices % 2 == 1;
+        self.notices -= 1;
+        self.happens(tables, Side::Arm, Cue::Neighbour(there));
+    }
+
+    /// What is being done is done.
+    pub fn finish(&mut self, tables: &Tables) {
+        let (world, times) = tables.finish(self.world);
+        self.world = world;
+        if times > 1 {
+            self.broken(tables, "S6: something was done twice");
+        }
+    }
+
+    /// Puts a letter on the wire. Nobody waits any more for an answer to a process that is no more.
+    pub fn post(&mut self, tables: &Tables, letter: u32) {
+        let Stamp { kind, epoch, .. } = *tables.stamp(letter);
+        if let Kind::Response(side) = kind
+            && self.seen(tables, side).epoch != epoch
+        {
+            return;
+        }
+        let place = self.wire.partition_point(|other| *other < letter);
+        self.wire.insert(place, letter);
     }
 
     /// Takes letters off the wire that will never change anything: answers that nobody waits for, and
     /// messages whose receiver has written down that they are past and whose answer nobody waits for.
-    pub fn sweep(&mut self) {
-        let instructions = heard(&self.arm.disk, "s/in/instruction/boss");
-        let reports = heard(&self.boss.disk, "s/in/report/arm");
-        let of = |epoch, queue: &VecDeque<Letter>| (epoch, queue.front().map(Letter::seq));
-        let boss = of(self.boss.epoch, &self.boss.queue);
-        let arm = of(self.arm.epoch, &self.arm.queue);
-        let answered = |(epoch, seq), (now, first): (u64, Option<u64>)| {
-            epoch < now || first.is_none_or(|first| first > seq)
-        };
-        self.wire.retain(|_, (letter, _)| match &**letter {
-            Letter::Instruction(it) => {
-                let it = (it.epoch, it.seq);
-                !(is_past(it, instructions) && answered(it, boss))
-            }
-            Letter::StopAhead(it) => !is_past((it.epoch, it.seq), instructions),
-            Letter::Report(it) => {
-                let it = (it.epoch, it.seq);
-                !(is_past(it, reports) && answered(it, arm))
-            }
-            Letter::Response { to, .. } => {
-                let (_, first) = match to {
-                    Side::Boss => boss,
-                    Side::Arm => arm,
-                };
-                first == Some(letter.seq())
+    pub fn sweep(&mut self, tables: &Tables) {
+        if self.wire.is_empty() {
+            return;
+        }
+        let boss = self.seen(tables, Side::Boss);
+        let arm = self.seen(tables, Side::Arm);
+        self.wire.retain(|letter| {
+            let stamp = tables.stamp(*letter);
+            let waits = |seen: &Seen| {
+                stamp.epoch == seen.epoch && seen.first.is_some_and(|(_, seq)| seq <= stamp.seq)
+            };
+            match stamp.kind {
+                Kind::Instruction { .. } => !is_past(stamp, arm) || waits(boss),
+                Kind::StopAhead => !is_past(stamp, arm),
+                Kind::Report => !is_past(stamp, boss) || waits(arm),
+                Kind::Response(Side::Boss) => answers(stamp, boss),
+                Kind::Response(Side::Arm) => answers(stamp, arm),
             }
         });
     }
 
-    /// The fingerprint again, and what can be seen to be wrong.
-    pub fn stamp(&mut self, protocol: &Protocol, before: Option<&Self>) {
-        if before.is_none_or(|before| !Arc::ptr_eq(&before.boss, &self.boss)) {
-            let boss = self.boss.clone();
-            self.examine(protocol, &boss);
-            let machine = boss.station.machine();
-            let absent: Vec<String> = machine.absent().iter().map(|n| n.to_string()).collect();
-            self.boss_print = boss.print(&absent);
+    /// Looks for what can be seen to be wrong.
+    pub fn look(&mut self, tables: &Tables) {
+        let boss = self.seen(tables, Side::Boss);
+        let arm = self.seen(tables, Side::Arm);
+        if let Some(fault) = boss.fault.as_ref().or(arm.fault.as_ref()) {
+            self.broken(tables, fault);
         }
-        if before.is_none_or(|before| !Arc::ptr_eq(&before.arm, &self.arm)) {
-            let machine = self.arm.station.machine();
-            self.arm_print = self.arm.print(&machine.volatile());
-            if let Some(fault) = machine.fault() {
-                self.broken(fault);
-            }
-        }
-        let mut hasher = DefaultHasher::new();
-        (self.boss_print, self.arm_print, &self.world).hash(&mut hasher);
-        for (key, (_, count)) in &self.wire {
-            (key, count).hash(&mut hasher);
-        }
-        (&self.notices, &self.asked, &self.acked, &self.cleared).hash(&mut hasher);
-        (self.left, &self.broken).hash(&mut hasher);
-        self.print = hasher.finish();
-    }
-
-    /// S1, and the invariants of the agent itself.
-    fn examine(&mut self, protocol: &Protocol, boss: &Node<Boss>) {
-        let machine = boss.station.machine();
-        if catch_unwind(AssertUnwindSafe(|| machine.check())).is_err() {
-            self.broken("an invariant of the agent does not hold");
-        }
-        if self.acked.is_empty() {
-            return;
-        }
-        match Node::start(
-            "boss",
-            boss.epoch + 1,
-            protocol.boss(boss.epoch + 1),
-            boss.disk.clone(),
-        ) {
-            Ok(again) => {
-                for &number in &self.acked.clone() {
-                    let id = goal(number);
-                    if !knows(again.station.machine(), &id) {
-                        self.broken(format!("S1: {id} was acknowledged and is not on the disk"));
-                    }
-                    if !knows(machine, &id) {
-                        self.broken(format!("S1: {id} was acknowledged and is forgotten"));
-                    }
-                }
-            }
-            Err(error) => self.broken(format!("the disk cannot be read: {error}")),
-        }
-    }
-
-    /// A user asks for a goal.
-    pub fn ask(&mut self, protocol: &Protocol, number: usize) {
-        self.asked.insert(number);
-        let input = Input::Goal(crate::boss::request(number));
-        Arc::make_mut(&mut self.boss).take(Arrival::Input(input), Some(Way::User(number)));
-        self.pump(protocol, Side::Boss);
-    }
-
-    /// The disk is done.
-    pub fn written(&mut self, protocol: &Protocol, side: Side) {
-        match side {
-            Side::Boss => Arc::make_mut(&mut self.boss).written(),
-            Side::Arm => Arc::make_mut(&mut self.arm).written(),
-        }
-        self.pump(protocol, side);
-    }
-
-    /// The executor hears what the world has to say.
-    pub fn sense(&mut self, protocol: &Protocol) {
-        if let Some(sensor) = self.world.says.pop_front() {
-            let arrival = Arrival::Input(Input::Local(sensor));
-            Arc::make_mut(&mut self.arm).take(arrival, None);
-            self.pump(protocol, Side::Arm);
-        }
-    }
-
-    /// What is being done is done.
-    pub fn finish(&mut self) {
-        let action = self.world.doing.as_ref().map(|(.., action)| action.clone());
-        if self.world.finish() > 1 {
-            let action = action.map(|action| action.to_string()).unwrap_or_default();
-            self.broken(format!("S6: {action} was done twice"));
-        }
-    }
-
-    /// That one hears that its neighbour is there, or is not.
-    pub fn notice(&mut self, side: Side) {
-        let Some(there) = self.notices[side as usize].pop_front() else {
-            return;
-        };
-        let name = side.other().name().into();
-        match side {
-            Side::Boss => {
-                let line = self.arm.station.line();
-                Arc::make_mut(&mut self.boss).take(presence(name, line, there), None);
-            }
-            Side::Arm => {
-                let line = self.boss.station.line();
-                Arc::make_mut(&mut self.arm).take(presence(name, line, there), None);
-            }
-        }
-    }
-
-    /// A letter arrives.
-    pub fn deliver(&mut self, protocol: &Protocol, letter: &Letter) {
-        match letter.clone() {
-            Letter::Instruction(message) => {
-                let epoch = message.epoch;
-                let way = Some(Way::Neighbour { epoch });
-                Arc::make_mut(&mut self.arm).take(Arrival::Instruction(message), way);
-                self.pump(protocol, Side::Arm);
-            }
-            Letter::StopAhead(message) => {
-                Arc::make_mut(&mut self.arm).take(Arrival::StopAhead(message), None);
-                self.pump(protocol, Side::Arm);
-            }
-            Letter::Report(message) => {
-                let epoch = message.epoch;
-                let way = Some(Way::Neighbour { epoch });
-                Arc::make_mut(&mut self.boss).take(Arrival::Report(message), way);
-                self.pump(protocol, Side::Boss);
-            }
-            Letter::Response {
-                to, response, line, ..
-            } => {
-                let queue = match to {
-                    Side::Boss => &self.boss.queue,
-                    Side::Arm => &self.arm.queue,
-                };
-                if queue
-                    .front()
-                    .is_some_and(|first| first.seq() == letter.seq())
-                {
-                    self.answered(protocol, to, response, line);
-                }
-            }
-        }
-    }
-
-    fn answered(&mut self, protocol: &Protocol, to: Side, response: Response, line: u64) {
-        match (to, response) {
-            (_, Response::Superseded { seq }) => {
-                self.broken(format!("S8: message {seq} of the {} is refused", to.name()));
-            }
-            (Side::Boss, Response::Applied { seq, answer }) => {
-                let boss = Arc::make_mut(&mut self.boss);
-                let sent = boss.queue.pop_front();
-                let answer = answer.map(|answer| match answer {
-                    Answer::Finished { .. } if protocol.mutant == Some(Mutant::NoOutcome) => {
-                        Answer::Rejected {
-                            reason: "it is over".to_owned(),
-                        }
-                    }
-                    answer => answer,
-                });
-                if let Some(Letter::Instruction(message)) = sent
-                    && let Instruction::Clear { id } = message.body
-                    && !matches!(answer, Some(Answer::Rejected { .. }))
-                {
-                    self.cleared.insert(id);
-                }
-                let by = "arm".into();
-                let answer = answer.unwrap_or(Answer::Accepted);
-                let arrival = Arrival::Answered {
-                    by,
-                    line,
-                    seq,
-                    answer,
-                };
-                boss.take(arrival, None);
-                let next = boss.queue.front().cloned();
-                self.post(next);
-                self.pump(protocol, to);
-            }
-            (Side::Arm, Response::Applied { seq, .. }) => {
-                let arm = Arc::make_mut(&mut self.arm);
-                arm.queue.pop_front();
-                let by = "boss".into();
-                arm.take(Arrival::Delivered { by, line, seq }, None);
-                let next = arm.queue.front().cloned();
-                self.post(next);
-                self.pump(protocol, to);
-            }
-            _ => {}
-        }
-    }
-
-    /// Puts a letter on the wire.
-    pub fn post(&mut self, letter: Option<Letter>) {
-        let Some(letter) = letter else {
-            return;
-        };
-        let key = format!("{letter:?}");
-        let entry = self.wire.entry(key);
-        entry.or_insert_with(|| (Arc::new(letter), 0)).1 += 1;
-    }
-
-    /// What that one has to say goes out.
-    pub fn pump(&mut self, protocol: &Protocol, side: Side) {
-        let hasty = protocol.mutant == Some(Mutant::Hasty);
-        match side {
-            Side::Boss => {
-                let effects = Arc::make_mut(&mut self.boss).effects(hasty);
-                self.boss_says(effects);
-            }
-            Side::Arm => {
-                let effects = Arc::make_mut(&mut self.arm).effects(hasty);
-                self.arm_says(effects);
-            }
-        }
-    }
-
-    /// These effects of the superior get out.
-    pub fn boss_says<O>(&mut self, effects: Vec<Effect<O, Way>>) {
-        for effect in effects {
-            match effect {
-                Effect::Instruct { message, .. } => {
-                    let letter = Letter::Instruction(message);
-                    let queue = &mut Arc::make_mut(&mut self.boss).queue;
-                    queue.push_back(letter.clone());
-                    if queue.len() == 1 {
-                        self.post(Some(letter));
-                    }
-                }
-                Effect::StopAhead { message, .. } => self.post(Some(Letter::StopAhead(message))),
-                Effect::Respond { to, response, line } => {
-                    self.respond(Side::Arm, to, response, line)
-                }
-                _ => {}
-            }
-        }
-    }
-
-    /// These effects of the executor get out.
-    pub fn arm_says(&mut self, effects: Vec<Effect<Motor, Way>>) {
-        for effect in effects {
-            match effect {
-                Effect::Report { message, .. } => {
-                    let letter = Letter::Report(message);
-                    let queue = &mut Arc::make_mut(&mut self.arm).queue;
-                    queue.push_back(letter.clone());
-                    if queue.len() == 1 {
-                        self.post(Some(letter));
-                    }
-                }
-                Effect::Local(message) => {
-                    if let Motor::Go { id, .. } = &message.body
-                        && self.cleared.contains(id)
-                    {
-                        let what = format!("S5: {id} was cleared and starts");
-                        self.broken(what);
-                    }
-                    if self.world.obey(message.body) {
-                        self.broken("S3: two actions at once");
-                    }
-                }
-                Effect::Respond { to, response, line } => {
-                    self.respond(Side::Boss, to, response, line);
-                }
-                _ => {}
-            }
-        }
-    }
-
-    fn respond(&mut self, neighbour: Side, to: Way, response: Response, line: u64) {
-        match (to, response) {
-            (Way::User(number), Response::Goal(Ok(_))) => {
-                self.acked.insert(number);
-            }
-            (Way::User(_), response) => self.broken(format!("a goal is answered {response:?}")),
-            (Way::Neighbour { epoch }, response) => {
-                let now = match neighbour {
-                    Side::Boss => self.boss.epoch,
-                    Side::Arm => self.arm.epoch,
-                };
-                // Nobody waits for it any more otherwise.
-                if epoch == now {
-                    self.post(Some(Letter::Response {
-                        to: neighbour,
-                        epoch,
-                        response,
-                        line,
-                    }));
-                }
-            }
+        let lost = self.acked & !(boss.kept & boss.known);
+        if lost != 0 {
+            let id = goal(lost.trailing_zeros() as usize);
+            let what = match boss.kept & lost == lost {
+                false => format!("S1: {id} was acknowledged and is not on the disk"),
+                true => format!("S1: {id} was acknowledged and is forgotten"),
+            };
+            self.broken(tables, &what);
         }
     }
 }
 
-fn heard(disk: &Rows, key: &str) -> (u64, u64) {
-    let heard = read_row::<Heard<Answer>>(disk, key).ok().flatten();
-    heard.map_or((0, 0), |heard| heard.last())
+fn bit(number: u32) -> u64 {
+    assert!(number < 64, "more executions than were thought of");
+    1 << number
 }
 
-fn is_past((epoch, seq): (u64, u64), (known, last): (u64, u64)) -> bool {
-    epoch < known || epoch == known && seq <= last
+fn is_past(stamp: &Stamp, receiver: &Seen) -> bool {
+    let (epoch, last) = receiver.heard;
+    stamp.epoch < epoch || stamp.epoch == epoch && stamp.seq <= last
 }
 
-fn presence<L>(name: agent_core::model::Symbol, line: u64, there: bool) -> Arrival<L> {
-    match there {
-        true => Arrival::Appeared { name, line },
-        false => Arrival::Input(Input::Neighbour { name, there }),
-    }
+fn answers(stamp: &Stamp, sender: &Seen) -> bool {
+    sender.first.is_some_and(|(_, seq)| seq == stamp.seq)
 }

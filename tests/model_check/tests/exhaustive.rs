@@ -1,4 +1,4 @@
-//! All states with one kind of fault, and mistakes that are found.
+//! All states within small budgets of faults, and mistakes that are found.
 
 use intermezzo_model_check::{Budget, Found, Mutant, Protocol, check};
 
@@ -17,36 +17,48 @@ const CRASH: Budget = Budget {
     duplicates: 0,
     crashes: 1,
 };
+const EACH: Budget = Budget {
+    losses: 1,
+    duplicates: 1,
+    crashes: 1,
+};
 
-fn all_states(goals: usize, budget: Budget, mutant: Option<Mutant>) -> Found {
-    check(&Protocol::new(goals, budget, mutant), None)
-}
-
-fn holds(goals: usize, budget: Budget) {
-    let found = all_states(goals, budget, None);
+fn holds(protocol: &Protocol) {
+    let found = check(protocol, None, |_| {});
     assert!(found.violations.is_empty(), "{:#?}", found.violations);
+    assert!(found.complete);
     // A model in which nothing happens holds everything.
     assert!(found.unique > 100, "only {} states", found.unique);
 }
 
+fn with(mutant: Mutant, goals: usize, budget: Budget) -> Found {
+    check(&Protocol::new(goals, budget, Some(mutant)), None, |_| {})
+}
+
 fn is_found(mutant: Mutant, goals: usize, budget: Budget) {
-    let found = all_states(goals, budget, Some(mutant));
+    let found = with(mutant, goals, budget);
     assert!(!found.violations.is_empty(), "{mutant:?} was not found");
 }
 
 #[test]
+fn one_goal_ends_once_whatever_happens_once_of_each_kind() {
+    holds(&Protocol::new(1, EACH, None));
+}
+
+#[test]
 fn two_goals_end_once_whatever_answer_is_lost() {
-    holds(2, LOSS);
+    holds(&Protocol::new(2, LOSS, None));
 }
 
 #[test]
-fn one_goal_ends_once_whatever_arrives_twice() {
-    holds(1, DUPLICATE);
+fn two_goals_end_once_whatever_arrives_twice() {
+    holds(&Protocol::new(2, DUPLICATE, None));
 }
 
 #[test]
-fn one_goal_ends_once_whoever_dies() {
-    holds(1, CRASH);
+fn processes_that_look_the_same_go_on_alike() {
+    holds(&Protocol::new(1, EACH, None).doubting());
+    holds(&Protocol::new(2, DUPLICATE, None).doubting());
 }
 
 #[test]
@@ -57,4 +69,9 @@ fn effects_that_do_not_wait_for_the_disk_are_found() {
 #[test]
 fn an_inbox_that_is_not_written_down_is_found() {
     is_found(Mutant::NoInbox, 1, CRASH);
+}
+
+#[test]
+fn an_instruction_that_is_followed_again_when_it_comes_again_is_found() {
+    is_found(Mutant::Afresh, 1, DUPLICATE);
 }

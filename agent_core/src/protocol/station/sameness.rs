@@ -11,6 +11,12 @@ where
     M::Out: Clone + Debug,
     T: Clone + Debug,
 {
+    /// Whether anything but events for observers waits for the disk.
+    pub fn has_to_say(&self) -> bool {
+        let mut held = self.held.iter().map(|(_, effect)| effect);
+        held.any(|effect| !matches!(effect, Effect::Event { .. }))
+    }
+
     /// What it would write down if nothing were being written, and in words what it remembers besides,
     /// events for observers excepted.
     /// Two stations that have written the same, and of whose machines nothing is volatile, go on alike
