@@ -31,3 +31,28 @@ fn is_drawn_as(file: &str, picture: &str, start: &str, goal: &str, closed: Optio
 fn the_museum_looks_as_its_picture_shows() {
     is_drawn_as("museum/map.geojson", "museum/museum.svg", "n1", "n40", None);
 }
+
+#[test]
+fn the_office_looks_as_its_picture_shows() {
+    is_drawn_as(
+        "examples/office.geojson",
+        "examples/office.svg",
+        "charger1",
+        "shelf_b",
+        None,
+    );
+}
+
+#[test]
+fn the_map_of_the_office_is_what_its_navigation_graph_makes() {
+    let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let graph = fs::read_to_string(dir.join("office.rmf.yaml")).expect("the graph is there");
+    let made = maps::from_rmf("office.rmf.yaml", &graph, &maps::RmfOptions::default());
+    let made = made.expect("the graph is in order");
+    let kept = fs::read_to_string(dir.join("office.geojson")).unwrap_or_default();
+    assert!(
+        made.map == kept,
+        "maps/examples/office.geojson is out of date: \
+         intermezzo map from-rmf maps/examples/office.rmf.yaml -o maps/examples/office.geojson"
+    );
+}

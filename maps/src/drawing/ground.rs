@@ -46,6 +46,20 @@ impl Outline {
         }
     }
 
+    /// Whether a point lies within the outline and its padding. Not if nobody has drawn an outline and
+    /// the nodes make none.
+    pub(super) fn holds(&self, point: [f64; 2]) -> bool {
+        let next = self.points.iter().cycle().skip(1);
+        let mut sides = self.points.iter().zip(next);
+        // A hull turns left all the way round.
+        self.points.len() > 2
+            && sides.all(|(from, to)| {
+                let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+                let left = dx * (point[1] - from[1]) - dy * (point[0] - from[0]);
+                left >= -self.padding_px * dx.hypot(dy)
+            })
+    }
+
     /// Left, top, right and bottom.
     pub(super) fn bounds(&self) -> [f64; 4] {
         let mut bounds = [

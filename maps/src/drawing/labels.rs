@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::ground::Outline;
 use super::ink::width_px;
 
 /// Of the squares that what is drawn is filed by.
@@ -109,6 +110,29 @@ impl Labels {
             found[0] >= left - 1.0 && found[2] <= right + 1.0
         };
         let candidates: Vec<_> = candidates.into_iter().filter(inside).collect();
+        self.best(&candidates, text, size_px, f64::INFINITY)
+    }
+
+    /// Somewhere in an outline, all of it; over lines if it has to.
+    pub(super) fn inside(&mut self, outline: &Outline, text: &str, size_px: f64) -> Option<Placed> {
+        let [left, top, right, bottom] = outline.bounds();
+        let parts = [0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9];
+        let candidates: Vec<_> = parts
+            .iter()
+            .flat_map(|down| parts.iter().map(move |across| [*across, *down]))
+            .map(|[across, down]| {
+                let at = [
+                    left + (right - left) * across,
+                    top + (bottom - top) * down + size_px * 0.3,
+                ];
+                (at, "middle")
+            })
+            .filter(|(at, anchor)| {
+                let [left, top, right, bottom] = extent_of(*at, anchor, text, size_px);
+                let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+                corners.into_iter().all(|corner| outline.holds(corner))
+            })
+            .collect();
         self.best(&candidates, text, size_px, f64::INFINITY)
     }
 

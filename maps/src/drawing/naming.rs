@@ -36,9 +36,27 @@ impl Drawing<'_> {
         let mut group = Group::new();
         let area_px = (self.frame.usual_px * 0.2).clamp(9.0, 14.0);
         for area in self.site.areas() {
-            let bounds = Outline::of(area, self.site, &self.frame).bounds();
+            let outline = Outline::of(area, self.site, &self.frame);
             let name = area.name().as_str();
-            if let Some(placed) = self.labels.within(bounds, name, area_px) {
+            let inside = if area.rectangle_m().is_none() {
+                self.labels.inside(&outline, name, area_px)
+            } else {
+                None
+            };
+            // In a corner of a rectangle; beside an outline that is too small.
+            let bounds = outline.bounds();
+            let [left, top, right, bottom] = bounds;
+            let (middle, radius) = (
+                sign::middle([[left, top], [right, bottom]]),
+                (right - left) / 2.0,
+            );
+            let placed = inside
+                .or_else(|| self.labels.within(bounds, name, area_px))
+                .or_else(|| {
+                    self.labels
+                        .beside(middle, radius, name, area_px, f64::INFINITY)
+                });
+            if let Some(placed) = placed {
                 group.append(label(name, &placed, "a", area_px));
             }
         }
@@ -78,13 +96,19 @@ impl Drawing<'_> {
         let look = self.kinds.look(node.kind());
         let name = node.name().as_str();
         let text = match node.kind() {
-            Some(kind) if look.rank <= NOTABLE => {
+            Some(kind) if look.rank <= NOTABLE && !name.contains(kind) => {
                 Cow::from(format!("{name} {}", kind.replace('_', " ")))
             }
             _ => Cow::from(name),
         };
+        // What people have a name for is better known than what only has a number.
+        let rank = match node.kind() {
+            _ if marked => 0,
+            None if name != format!("n{}", node.id()) => NEGLIGIBLE - 1,
+            _ => look.rank,
+        };
         Named {
-            rank: if marked { 0 } else { look.rank },
+            rank,
             text,
             at: self.frame.at(node.position_m()),
             radius: if marked {
@@ -92,7 +116,7 @@ impl Drawing<'_> {
             } else {
                 self.radius * look.size
             },
-            class: match look.rank {
+            class: match rank {
                 _ if marked => "m",
                 NEGLIGIBLE.. => "s",
                 _ => "w",

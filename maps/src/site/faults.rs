@@ -5,13 +5,13 @@ use std::fmt;
 use crate::Finding;
 
 /// The findings about one file so far.
-pub(super) struct Faults {
+pub(crate) struct Faults {
     file: String,
     found: Vec<(usize, String)>,
 }
 
 impl Faults {
-    pub(super) fn of(file: &str) -> Self {
+    pub(crate) fn of(file: &str) -> Self {
         Self {
             file: file.to_owned(),
             found: Vec::new(),
@@ -19,7 +19,7 @@ impl Faults {
     }
 
     /// Something is wrong in this line; in none, if it is 0.
-    pub(super) fn add(&mut self, line: usize, message: impl Into<String>) {
+    pub(crate) fn add(&mut self, line: usize, message: impl Into<String>) {
         self.found.push((line, message.into()));
     }
 
@@ -28,12 +28,12 @@ impl Faults {
         self.add(origin.line, format!("{origin} {message}"));
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.found.is_empty()
     }
 
     /// From the top of the file to its end.
-    pub(super) fn into_findings(mut self) -> Vec<Finding> {
+    pub(crate) fn into_findings(mut self) -> Vec<Finding> {
         self.found.sort_by_key(|(line, _)| *line);
         self.found
             .into_iter()

@@ -20,13 +20,13 @@ use petgraph::Direction;
 use petgraph::graph::{DiGraph, NodeIndex};
 use petgraph::visit::EdgeRef;
 
+pub(crate) use faults::Faults;
 pub(crate) use parts::metres;
 pub use parts::{Area, Door, Node, Passage};
 pub use route::Route;
 pub use summary::Summary;
 
 use crate::Finding;
-use faults::Faults;
 
 /// A place as it was drawn, in metres.
 ///
