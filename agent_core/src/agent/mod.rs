@@ -163,6 +163,13 @@ impl<P: Planner> Agent<P> {
         agent
     }
 
+    /// The same agent, which must have done nothing yet, for a start of that epoch: to start many
+    /// alike, one is made and copied, as a planner reads its domain for longer than a copy takes.
+    pub fn for_epoch(mut self, epoch: u64) -> Self {
+        self.configuration.epoch = epoch;
+        self
+    }
+
     /// Its name.
     pub fn name(&self) -> &Symbol {
         &self.configuration.name

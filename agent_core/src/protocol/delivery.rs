@@ -100,6 +100,12 @@ impl<T> Outbox<T> {
         waiting.unwrap_or(self.next_seq) - 1
     }
 
+    /// The number of the oldest message that waits, or of the next if none does, and that of the
+    /// next: as long as they are the same, the same messages wait.
+    pub fn extent(&self) -> (u64, u64) {
+        (self.acknowledged() + 1, self.next_seq)
+    }
+
     /// What is not acknowledged.
     pub fn waiting(&self) -> impl Iterator<Item = (u64, &T)> {
         self.waiting.iter().map(|(seq, body)| (*seq, body))
@@ -157,6 +163,11 @@ pub struct Heard<A> {
 }
 
 impl<A> Heard<A> {
+    /// Different after every message that was applied.
+    pub fn mark(&self) -> (u64, u64, u64) {
+        (self.line, self.epoch, self.seq)
+    }
+
     /// The epoch and the number of the last message that was applied.
     pub fn last(&self) -> (u64, u64) {
         (self.epoch, self.seq)

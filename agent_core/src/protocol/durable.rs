@@ -76,6 +76,8 @@ pub trait Durable: Machine {
 pub struct Ledger {
     known: Rows,
     changed: BTreeSet<String>,
+    /// Room to write a row in, to see whether it is different.
+    draft: Vec<u8>,
 }
 
 impl Ledger {
@@ -88,7 +90,7 @@ impl Ledger {
             known: own
                 .map(|(key, value)| (key.clone(), value.clone()))
                 .collect(),
-            changed: BTreeSet::new(),
+            ..Self::default()
         }
     }
 
@@ -101,11 +103,14 @@ impl Ledger {
     pub fn put<T: Serialize + ?Sized>(&mut self, key: String, value: &T) {
         // Everything that is put here is made of structs, enums, sequences with a length and
         // maps, all of which have a form in postcard.
-        let bytes = postcard::to_stdvec(value).expect("every row can be written");
-        if self.known.get(&key) != Some(&bytes) {
-            self.known.insert(key.clone(), bytes);
+        let mut draft = std::mem::take(&mut self.draft);
+        draft.clear();
+        let draft = postcard::to_extend(value, draft).expect("every row can be written");
+        if self.known.get(&key) != Some(&draft) {
+            self.known.insert(key.clone(), draft.clone());
             self.changed.insert(key);
         }
+        self.draft = draft;
     }
 
     /// There is no such row any more.

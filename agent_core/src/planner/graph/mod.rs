@@ -20,6 +20,7 @@ mod key;
 mod known;
 mod lists;
 mod nodes;
+mod reading;
 mod replay;
 mod search;
 mod world;
@@ -37,11 +38,11 @@ use dive::Dive;
 use intern::NONE;
 use key::{Key, Touched};
 use nodes::{Graph, INFINITE, LEAST_TO_BEGIN_ANEW, Work};
+use reading::Reading;
 use replay::Replay;
 use search::{Search, Step, walk};
 use world::World;
 
-use super::invariants::mutex_groups;
 use super::{Agenda, Outcome, Plan, Planner, Problem, Settings, TaskList};
 use crate::model::{Fact, FactChange};
 use crate::protocol::GoalId;
@@ -67,6 +68,8 @@ const GRAPHS: usize = 4;
 pub struct GraphPlanner {
     settings: Settings,
     next_frame: u64,
+    /// The domain that was read last.
+    reading: Option<Arc<Reading>>,
     /// One for each map, domain and execution model; the one used last is the last.
     graphs: Vec<Graph>,
     thinking: Option<Thinking>,
@@ -117,6 +120,7 @@ impl GraphPlanner {
         Self {
             settings,
             next_frame: 0,
+            reading: None,
             graphs: Vec::new(),
             thinking: None,
             kept: BTreeMap::new(),
@@ -145,11 +149,7 @@ impl GraphPlanner {
                 if self.graphs.len() == GRAPHS {
                     self.graphs.remove(0);
                 }
-                let groups = match self.merges {
-                    true => groups::disjoint(&mutex_groups(&problem.domain, &problem.model)),
-                    false => Vec::new(),
-                };
-                let world = World::new(problem, groups);
+                let world = World::new(problem, &self.read(problem));
                 self.graphs
                     .push(Graph::new(world, self.least_to_begin_anew));
             }
@@ -166,6 +166,14 @@ impl GraphPlanner {
         touched.keys.extend(forbidden.map(|key| (key, NONE)));
         graph.touched(&touched);
         graph.begin_anew_if_much_is_dirty();
+    }
+
+    /// The problem's domain, which is read if it is another than before.
+    fn read(&mut self, problem: &Problem) -> Arc<Reading> {
+        let known = self.reading.take().filter(|known| known.is_of(problem));
+        let reading = known.unwrap_or_else(|| Arc::new(Reading::new(problem, self.merges)));
+        self.reading = Some(reading.clone());
+        reading
     }
 
     fn go_on(&mut self, mut budget: u64) -> Option<Outcome> {

@@ -9,6 +9,7 @@ use super::groups::Members;
 use super::intern::{Map, NONE, Names, Slices};
 use super::key::{Key, Touched};
 use super::lists::{Lists, NIL};
+use super::reading::Reading;
 use crate::model::{Action, Atom, Belief, Domain, ExecutionModel, FactChange, Symbol};
 use crate::planner::{Item, Problem, TaskList};
 
@@ -52,19 +53,18 @@ pub(super) struct World {
 }
 
 impl World {
-    pub fn new(problem: &Problem, groups: Vec<Members>) -> Self {
-        let mut names = Names::default();
-        let code = Arc::new(Code::new(&mut names, &problem.domain, &problem.model));
+    /// With the problem's map and belief; `reading` is of its domain.
+    pub fn new(problem: &Problem, reading: &Reading) -> Self {
         let mut world = Self {
             domain: problem.domain.clone(),
             model: problem.model.clone(),
             map: problem.map.clone(),
-            names,
-            code,
+            names: reading.names.clone(),
+            code: reading.code.clone(),
             facts: Facts::default(),
             lists: Lists::new(),
             deltas: Slices::default(),
-            groups,
+            groups: reading.groups.clone(),
             kind_of: Map::default(),
             fits: Map::default(),
             objects: Map::default(),

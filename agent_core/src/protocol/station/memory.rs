@@ -1,6 +1,6 @@
 //! What a station writes down of itself, and how it comes back from that.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -126,16 +126,23 @@ where
 
     /// The rows of the station itself that are different.
     pub(super) fn own_rows(&mut self) -> Vec<Row> {
-        let ledger = &mut self.ledger;
-        ledger.put(LINE.to_owned(), &self.line);
-        ledger.put(EPOCH.to_owned(), &self.epoch);
-        ledger.put(NEXT_EVENT.to_owned(), &self.next_event);
-        let mut keys = BTreeSet::new();
-        for (number, event) in &self.last_ends {
-            let key = format!("{EVENT}{number:020}");
-            put_once(ledger, &mut keys, key, event);
+        let (ledger, noted) = (&mut self.ledger, &mut self.noted);
+        if noted.next_event == 0 {
+            ledger.put(LINE.to_owned(), &self.line);
+            ledger.put(EPOCH.to_owned(), &self.epoch);
         }
-        ledger.keep_only(EVENT, &keys);
+        if renew(&mut noted.next_event, self.next_event) {
+            ledger.put(NEXT_EVENT.to_owned(), &self.next_event);
+        }
+        let last_end = self.last_ends.back().map(|(number, _)| *number);
+        if renew(&mut noted.last_end, last_end) {
+            let mut keys = BTreeSet::new();
+            for (number, event) in &self.last_ends {
+                let key = format!("{EVENT}{number:020}");
+                put_once(ledger, &mut keys, key, event);
+            }
+            ledger.keep_only(EVENT, &keys);
+        }
         // It goes out once this is written, unless the process dies just then.
         let mut keys = BTreeSet::new();
         for (_, effect) in &self.held {
@@ -145,21 +152,88 @@ where
                 keys.insert(key);
             }
         }
-        ledger.keep_only(OBSERVED, &keys);
+        if renew(&mut noted.observed, Some(keys.len())) || !keys.is_empty() {
+            ledger.keep_only(OBSERVED, &keys);
+        }
         for (name, line) in &self.neighbours {
-            ledger.put(format!("{NEIGHBOUR}{name}"), line);
+            if noted.neighbours.renew(name, *line) {
+                ledger.put(format!("{NEIGHBOUR}{name}"), line);
+            }
         }
-        put_inbox(ledger, INSTRUCTIONS_IN, &self.mailboxes.instructions_in);
-        put_inbox(ledger, REPORTS_IN, &self.mailboxes.reports_in);
-        put_inbox(ledger, LOCAL_IN, &self.mailboxes.local_in);
-        for (to, sending) in &self.mailboxes.instructions_out {
-            put_outbox(ledger, INSTRUCTIONS_OUT, to, &sending.outbox);
+        let boxes = &self.mailboxes;
+        let [instructions_out, reports_out] = &mut noted.outboxes;
+        let [instructions, reports, local] = &mut noted.inboxes;
+        put_inbox(
+            ledger,
+            instructions,
+            INSTRUCTIONS_IN,
+            &boxes.instructions_in,
+        );
+        put_inbox(ledger, reports, REPORTS_IN, &boxes.reports_in);
+        put_inbox(ledger, local, LOCAL_IN, &boxes.local_in);
+        for (to, sending) in &boxes.instructions_out {
+            put_outbox(
+                ledger,
+                instructions_out,
+                INSTRUCTIONS_OUT,
+                to,
+                &sending.outbox,
+            );
         }
-        for (to, sending) in &self.mailboxes.reports_out {
-            put_outbox(ledger, REPORTS_OUT, to, &sending.outbox);
+        for (to, sending) in &boxes.reports_out {
+            put_outbox(ledger, reports_out, REPORTS_OUT, to, &sending.outbox);
         }
         ledger.take()
     }
+}
+
+/// Of everything that is written down, what is different whenever that is: so what is still the
+/// same need not be looked at. At first, and after a start, nothing is noted.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Noted {
+    /// Never 0 once it is noted.
+    next_event: u64,
+    last_end: Option<u64>,
+    observed: Option<usize>,
+    neighbours: Marks<u64>,
+    /// Those of instructions, reports and what is local.
+    inboxes: [Marks<(u64, u64, u64)>; 3],
+    /// Those of instructions and reports.
+    outboxes: [Marks<(u64, u64)>; 2],
+}
+
+/// One mark for each neighbour.
+#[derive(Clone, Debug)]
+struct Marks<T>(BTreeMap<Symbol, T>);
+
+impl<T> Default for Marks<T> {
+    fn default() -> Self {
+        Self(BTreeMap::new())
+    }
+}
+
+impl<T: Copy + PartialEq> Marks<T> {
+    fn of(&self, neighbour: &Symbol) -> Option<T> {
+        self.0.get(neighbour).copied()
+    }
+
+    /// Whether it was not this before.
+    fn renew(&mut self, of: &Symbol, mark: T) -> bool {
+        match self.0.get_mut(of) {
+            Some(known) => renew(known, mark),
+            None => {
+                self.0.insert(of.clone(), mark);
+                true
+            }
+        }
+    }
+}
+
+/// Whether it was not this before.
+fn renew<T: PartialEq>(known: &mut T, now: T) -> bool {
+    let differs = *known != now;
+    *known = now;
+    differs
 }
 
 /// What is never changed once it is written needs no comparing.
@@ -175,20 +249,54 @@ fn put_once<V: Serialize>(
     keys.insert(key);
 }
 
-fn put_inbox(ledger: &mut Ledger, prefix: &str, inbox: &Inbox<Answer>) {
+fn put_inbox(
+    ledger: &mut Ledger,
+    marks: &mut Marks<(u64, u64, u64)>,
+    prefix: &str,
+    inbox: &Inbox<Answer>,
+) {
     for (from, heard) in inbox.senders() {
-        ledger.put(format!("{prefix}{from}"), heard);
+        if marks.renew(from, heard.mark()) {
+            ledger.put(format!("{prefix}{from}"), heard);
+        }
     }
 }
 
 /// The number of the next message at `…/<receiver>`, and what waits at `…/<receiver>/<number>`.
-fn put_outbox<B: Serialize>(ledger: &mut Ledger, prefix: &str, to: &Symbol, outbox: &Outbox<B>) {
-    ledger.put(format!("{prefix}{to}"), &outbox.next_seq());
-    let mut keys = BTreeSet::new();
-    for (seq, body) in outbox.waiting() {
-        put_once(ledger, &mut keys, format!("{prefix}{to}/{seq:020}"), body);
+fn put_outbox<B: Serialize>(
+    ledger: &mut Ledger,
+    marks: &mut Marks<(u64, u64)>,
+    prefix: &str,
+    to: &Symbol,
+    outbox: &Outbox<B>,
+) {
+    let known = marks.of(to);
+    let (first, next) = outbox.extent();
+    if !marks.renew(to, (first, next)) {
+        return;
     }
-    ledger.keep_only(&format!("{prefix}{to}/"), &keys);
+    let key = |seq| format!("{prefix}{to}/{seq:020}");
+    let (known_first, known_next) = match known {
+        Some(known) => known,
+        None => {
+            // Whatever is there from before this start.
+            let keys = (first..next).map(key).collect();
+            ledger.keep_only(&format!("{prefix}{to}/"), &keys);
+            (first, 0)
+        }
+    };
+    if next != known_next {
+        ledger.put(format!("{prefix}{to}"), &next);
+    }
+    for seq in known_first..first.min(known_next) {
+        ledger.remove(&key(seq));
+    }
+    for (seq, body) in outbox.waiting().filter(|(seq, _)| *seq >= known_next) {
+        // It may have been recalled.
+        if !ledger.has(&key(seq)) {
+            ledger.put(key(seq), body);
+        }
+    }
 }
 
 fn inbox(rows: &Rows, prefix: &str) -> Result<Inbox<Answer>, Unreadable> {
@@ -203,12 +311,12 @@ fn inbox(rows: &Rows, prefix: &str) -> Result<Inbox<Answer>, Unreadable> {
 fn outboxes<B: DeserializeOwned>(
     rows: &Rows,
     prefix: &str,
-) -> Result<std::collections::BTreeMap<Symbol, Sending<B>>, Unreadable> {
+) -> Result<BTreeMap<Symbol, Sending<B>>, Unreadable> {
     let heads = rows
         .range(prefix.to_owned()..)
         .map_while(|(key, _)| key.strip_prefix(prefix))
         .filter(|rest| !rest.contains('/'));
-    let mut outboxes = std::collections::BTreeMap::new();
+    let mut outboxes = BTreeMap::new();
     for to in heads {
         let key = format!("{prefix}{to}");
         let next_seq = read_row(rows, &key)?.unwrap_or(1);

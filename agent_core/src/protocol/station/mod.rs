@@ -22,6 +22,7 @@ use super::durable::{Durable, Ledger, Row};
 use super::{ActionId, Answer, Event, Happening, Input, Instruction, Output, Reply, ReportBody};
 use crate::model::{Symbol, Time};
 use mailboxes::Mailboxes;
+use memory::Noted;
 
 /// How many of the latest events about goals that were accepted or have ended are told again after
 /// a restart: what was written down may have died with the process before it was told.
@@ -55,6 +56,7 @@ pub struct Station<M: Durable, T> {
     held: VecDeque<(u64, Effect<M::Out, T>)>,
     ready: VecDeque<Effect<M::Out, T>>,
     ledger: Ledger,
+    noted: Noted,
 }
 
 /// Something was to be stopped before its turn.
@@ -91,6 +93,7 @@ where
             held: VecDeque::new(),
             ready: VecDeque::new(),
             ledger: Ledger::default(),
+            noted: Noted::default(),
         };
         station.collect();
         station
