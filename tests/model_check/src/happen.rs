@@ -32,6 +32,8 @@ pub enum Event {
     Again,
     /// It dies and starts again.
     Dies(Left),
+    /// Nobody dies any more.
+    Spared,
 }
 
 /// What a crash in the middle of a writing leaves.
@@ -101,6 +103,10 @@ impl Rules {
                 node.take(neighbour::<M>(true), None);
             }
             Event::Dies(left) => return self.dies(node, left),
+            Event::Spared => {
+                node.is_spared = true;
+                return (node, said);
+            }
         }
         self.pump(&mut node, &mut said);
         (node, said)
