@@ -9,6 +9,7 @@ use agent_core::model::Time;
 use agent_core::protocol::{Arrival, Effect, Input, Row, Rows, Station, Unreadable};
 use siphasher::sip128::{Hasher128, SipHasher13};
 
+use crate::fence::Fence;
 use crate::letter::{Letter, Way};
 use crate::role::Role;
 
@@ -27,6 +28,8 @@ pub struct Node<M: Role> {
     pub queue: VecDeque<Letter>,
     /// Whether it will not die any more. Then it does not matter what is on the disk.
     pub is_spared: bool,
+    /// What it was told to stop ahead of its turn.
+    pub fence: Option<Fence>,
 }
 
 impl<M: Role> Node<M> {
@@ -39,6 +42,7 @@ impl<M: Role> Node<M> {
             flight: None,
             queue: VecDeque::new(),
             is_spared: false,
+            fence: None,
         })
     }
 
@@ -104,7 +108,7 @@ impl<M: Role> Node<M> {
         words.hash(&mut hasher);
         format!("{:?}", self.queue).hash(&mut hasher);
         let volatile = self.station.machine().volatile();
-        (self.epoch, volatile, self.is_spared, kept).hash(&mut hasher);
+        (self.epoch, volatile, self.is_spared, &self.fence, kept).hash(&mut hasher);
         hasher.finish128().as_u128()
     }
 }
