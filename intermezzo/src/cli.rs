@@ -392,7 +392,7 @@ pub(crate) struct CertsArgs {
     #[arg(long, value_name = "DAYS", default_value_t = 365, value_parser = clap::value_parser!(u16).range(1..=3650))]
     pub(crate) days: u16,
     /// One user more, by an authority that was made here before.
-    #[arg(long, value_name = "NAME", conflicts_with = "force")]
+    #[arg(long, value_name = "NAME")]
     pub(crate) add: Option<String>,
     /// Replace what is there. Whoever has the old files is locked out.
     #[arg(long)]
@@ -419,7 +419,7 @@ pub(crate) struct PasswordsArgs {
     #[arg(value_name = "DIR")]
     pub(crate) dir: PathBuf,
     /// One user more.
-    #[arg(long, value_name = "NAME", conflicts_with = "force")]
+    #[arg(long, value_name = "NAME")]
     pub(crate) add: Option<String>,
     /// Replace what is there. Whoever has the old files is locked out.
     #[arg(long)]

@@ -80,7 +80,7 @@ impl Connection {
                     "no answer: not reachable or not permitted: {error}"
                 ))
                 .advice(
-                    "is the robot's router there, and may this machine and this user reach it (--security)?",
+                    "is the robot's router there, does it take this user (--security, --as), and is it reached by a name that its certificate has (`intermezzo certs --name`)?",
                 ),
             })?;
         let client = Client::new(&session, &keys);

@@ -36,17 +36,18 @@ pub(crate) fn certs(args: &CertsArgs) -> Result<Exit, Failure> {
         ROUTER,
         authority.router(ROUTER, &args.name, days)?,
     );
-    folder.put(format!("{ROUTER}.json5"), TLS.router);
+    folder.put_edited(format!("{ROUTER}.json5"), TLS.router);
     for (name, configuration) in TLS.clients {
         put_signed(&mut folder, name, authority.client(name, days)?);
         folder.put(format!("{name}.json5"), configuration);
     }
-    folder.write()?;
+    let kept = folder.write()?;
     let valid = format!(
         "An authority and certificates for {days} days are in {}.",
         args.dir.display()
     );
     next(&args.dir, &valid);
+    replaced(kept.as_deref());
     anstream::println!(
         "{DIM}To somebody elsewhere give ca.pem and the three files with their name (viewer.pem, \
          viewer-key.pem, viewer.json5),\nand nothing else. {AUTHORITY_KEY} makes more \
@@ -67,7 +68,7 @@ pub(crate) fn passwords(args: &PasswordsArgs) -> Result<Exit, Failure> {
             return Err(Failure::bad_input(there));
         }
         let password = password()?;
-        let mut folder = Folder::new(&args.dir, false);
+        let mut folder = Folder::new(&args.dir, args.force);
         let configuration = PASSWORDS.of_another(name, OPERATOR);
         let configuration = configuration.map(|text| text.replace(PLACE, &password));
         put_another(&mut folder, name, configuration);
@@ -83,7 +84,7 @@ pub(crate) fn passwords(args: &PasswordsArgs) -> Result<Exit, Failure> {
         return Ok(Exit::Done);
     }
     let mut folder = Folder::new(&args.dir, args.force);
-    folder.put(format!("{ROUTER}.json5"), PASSWORDS.router);
+    folder.put_edited(format!("{ROUTER}.json5"), PASSWORDS.router);
     let mut list = String::new();
     for (name, configuration) in PASSWORDS.clients {
         let password = password()?;
@@ -94,11 +95,12 @@ pub(crate) fn passwords(args: &PasswordsArgs) -> Result<Exit, Failure> {
         );
     }
     folder.put(LIST, list);
-    folder.write()?;
+    let kept = folder.write()?;
     next(
         &args.dir,
         &format!("Passwords are in {}.", args.dir.display()),
     );
+    replaced(kept.as_deref());
     anstream::println!(
         "{DIM}To somebody elsewhere give the file with their name (viewer.json5), and nothing else. \
          What is said can\nbe read on the way: beyond one machine use `intermezzo certs`.{DIM:#}"
@@ -144,6 +146,17 @@ fn next(dir: &Path, done: &str) {
     ] {
         let command = format!("intermezzo {command}");
         anstream::println!("  {command:<52} {DIM}{what}{DIM:#}");
+    }
+}
+
+/// Users of one's own have to be added again.
+fn replaced(kept: Option<&Path>) {
+    if let Some(kept) = kept {
+        anstream::println!(
+            "Whoever was added before is not known any more: add them again with --add. The rules as they \
+             stood are in {}.",
+            kept.display()
+        );
     }
 }
 

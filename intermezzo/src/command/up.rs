@@ -130,11 +130,14 @@ fn judge(ending: Ending) -> (Exit, Vec<String>) {
 /// How to talk to the robot, to be copied.
 async fn introduce(setup: &Setup, place: &Place, robot: &Robot) {
     let name = robot.keys.robot();
-    let option = if name == agent_link::options::DEFAULT_ROBOT {
+    let mut option = if name == agent_link::options::DEFAULT_ROBOT {
         String::new()
     } else {
         format!(" --robot {name}")
     };
+    if let Some(folder) = &setup.security {
+        option.push_str(&format!(" --security {}", folder.display()));
+    }
     // Not necessarily where it began: it may go on from an earlier state.
     let client = Client::new(&robot.session, &robot.keys);
     let world = client.look(RoleKind::World.name(), View::Status).await;

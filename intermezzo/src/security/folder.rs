@@ -14,6 +14,8 @@ pub(crate) struct Folder<'a> {
     /// Whether what is there may be replaced.
     force: bool,
     files: Vec<(String, String)>,
+    /// A file that people write in. If it is replaced, it is kept under another name.
+    edited: Option<String>,
 }
 
 impl<'a> Folder<'a> {
@@ -22,7 +24,15 @@ impl<'a> Folder<'a> {
             path,
             force,
             files: Vec::new(),
+            edited: None,
         }
+    }
+
+    /// One more file, that people write in.
+    pub(crate) fn put_edited(&mut self, name: impl Into<String>, text: impl Into<String>) {
+        let name = name.into();
+        self.edited = Some(name.clone());
+        self.put(name, text);
     }
 
     /// One more file.
@@ -30,11 +40,12 @@ impl<'a> Folder<'a> {
         self.files.push((name.into(), text.into()));
     }
 
-    /// Writes all of them, each readable by this user alone.
+    /// Writes all of them, each readable by this user alone. Returns where what people had written is
+    /// now, if it was replaced.
     ///
     /// # Errors
     /// If one of them is there and may not be replaced; then nothing was written.
-    pub(crate) fn write(self) -> Result<(), Failure> {
+    pub(crate) fn write(self) -> Result<Option<PathBuf>, Failure> {
         if !self.force {
             let mut paths = self.files.iter().map(|(name, _)| self.path.join(name));
             if let Some(there) = paths.find(|path| path.exists()) {
@@ -42,6 +53,7 @@ impl<'a> Folder<'a> {
             }
         }
         make(self.path)?;
+        let kept = self.keep_edited()?;
         for (name, text) in &self.files {
             let path = self.path.join(name);
             let failed = |error: std::io::Error| cannot("write", &path, &error);
@@ -56,7 +68,24 @@ impl<'a> Folder<'a> {
             };
             persisted.map_err(|error| failed(error.error))?;
         }
-        Ok(())
+        Ok(kept)
+    }
+
+    fn keep_edited(&self) -> Result<Option<PathBuf>, Failure> {
+        let Some(name) = &self.edited else {
+            return Ok(None);
+        };
+        let path = self.path.join(name);
+        let (_, new) = match self.files.iter().find(|(file, _)| file == name) {
+            Some(file) if path.exists() => file,
+            _ => return Ok(None),
+        };
+        if read(&path)? == *new {
+            return Ok(None);
+        }
+        let kept = self.path.join(format!("{name}.before"));
+        fs::rename(&path, &kept).map_err(|error| cannot("keep", &path, &error))?;
+        Ok(Some(kept))
     }
 }
 
@@ -85,7 +114,7 @@ fn cannot(what: &str, path: &Path, error: &std::io::Error) -> Failure {
 
 fn exists(path: &Path) -> Failure {
     Failure::bad_input(format_args!("{} is there already", path.display())).advice(
-        "another folder; or --add NAME for one user more; or --force to make everything anew, which locks out whoever has the old files",
+        "another folder; or --add NAME for one user more; or --force to replace what is there, which locks out whoever has the old files",
     )
 }
 
@@ -114,7 +143,7 @@ mod tests {
         assert!(refused.what.contains("is there already"), "{refused:?}");
         assert!(!path.join("new").exists(), "nothing was written");
         assert_eq!(read(&path.join("a")).unwrap(), "first");
-        write("third", true).unwrap();
+        assert_eq!(write("third", true).unwrap(), None);
         assert_eq!(read(&path.join("a")).unwrap(), "third");
         assert_eq!(mode(&path.join("a")), 0o600);
         assert_eq!(
@@ -122,5 +151,21 @@ mod tests {
             2,
             "nothing is left over"
         );
+    }
+    #[test]
+    fn what_people_have_written_is_kept_when_it_is_replaced() {
+        let parent = tempfile::tempdir().unwrap();
+        let path = parent.path();
+        let write = || {
+            let mut folder = Folder::new(path, true);
+            folder.put_edited("rules", "ours");
+            folder.write().unwrap()
+        };
+        assert_eq!(write(), None);
+        assert_eq!(write(), None, "nobody has written anything");
+        fs::write(path.join("rules"), "theirs").unwrap();
+        let kept = write().unwrap();
+        assert_eq!(read(&kept).unwrap(), "theirs");
+        assert_eq!(read(&path.join("rules")).unwrap(), "ours");
     }
 }
