@@ -9,7 +9,7 @@ use std::convert::Infallible;
 use super::*;
 use crate::model::{Atom, FactChange};
 use crate::protocol::durable::{Rows, Unreadable, read_row};
-use crate::protocol::{Command, Machine, Report};
+use crate::protocol::{Command, Happening, Machine, Output, Report};
 
 /// Does what it is told by commands, and remembers what it has heard.
 #[derive(Clone, Debug, Default)]
