@@ -47,6 +47,7 @@ impl Durable for Controller {
         self.ledger = Ledger::of(rows, "m/");
         // What was said when it was made had another number.
         self.outputs.clear();
+        self.what_waits_was_recalled();
         self.halt();
         Ok(())
     }

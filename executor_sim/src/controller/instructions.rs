@@ -39,23 +39,16 @@ impl Controller {
             Ok(skill) => skill,
             Err(reason) => return rejected(reason),
         };
-        let (rest, suspendable, waits) = skill;
+        let (rest, suspendable, stands) = skill;
+        // Nobody could stop it now.
         let gone = self.gone.contains(&superior);
-        if gone && !suspendable {
-            return rejected(format!("`{superior}`, which wants it, is gone"));
-        }
         let job = Record {
             id: id.clone(),
             superior,
             action,
             rest,
         };
-        if gone {
-            // Nobody could stop it.
-            self.keep(now, job);
-            return Answer::Accepted;
-        }
-        if waits {
+        if gone || !stands {
             self.waiting = Some(Waiting {
                 job,
                 suspendable,
@@ -68,16 +61,16 @@ impl Controller {
         Answer::Accepted
     }
 
-    /// What the robot can begin now, whether that can be suspended, and whether it has to stand
-    /// first; or why it cannot.
+    /// What the robot can begin, whether that can be suspended, and whether the robot stands already;
+    /// or why it cannot.
     fn fitting(&self, action: &Action) -> Result<(Skill, bool, bool), String> {
         let (skill, suspendable) = self.vocabulary.skill(action)?;
         if self.is_only_halting() {
-            return Ok((skill, suspendable, true));
+            return Ok((skill, suspendable, false));
         }
         self.free_to_begin()?;
         self.fits_here(&skill)?;
-        Ok((skill, suspendable, false))
+        Ok((skill, suspendable, true))
     }
 
     /// Whether that can be done from where the robot stands.
@@ -164,30 +157,25 @@ impl Controller {
         if self.waits(id).is_some() {
             return Answer::Accepted;
         }
-        let Some(record) = self.memory.record(id) else {
+        if self.memory.record(id).is_none() {
             return match self.over(id) {
                 Some(Some(outcome)) => Answer::Finished { outcome },
                 Some(None) => rejected(format!("{id} was cleared")),
                 None => rejected(format!("nothing is known of {id}")),
             };
-        };
-        if self.gone.contains(from) {
-            // Nobody could stop it: it is as if it had been suspended at once.
-            let record = record.clone();
-            self.report_suspended(&record);
-            return Answer::Accepted;
-        }
-        if self.is_only_halting() {
-            self.waiting = self.memory.take(id).map(|job| Waiting {
-                job,
-                suspendable: true,
-                resumed: true,
-            });
-            return Answer::Accepted;
         }
         let place = match self.free_to_begin() {
-            Ok(place) => place.clone(),
-            Err(reason) => return rejected(reason),
+            // If it is gone, nobody could stop it now.
+            Ok(place) if !self.gone.contains(from) => place.clone(),
+            Err(reason) if !self.is_only_halting() => return rejected(reason),
+            Ok(_) | Err(_) => {
+                self.waiting = self.memory.take(id).map(|job| Waiting {
+                    job,
+                    suspendable: true,
+                    resumed: true,
+                });
+                return Answer::Accepted;
+            }
         };
         let Some(job) = self.memory.take(id) else {
             return rejected(format!("nothing is known of {id}"));

@@ -52,6 +52,10 @@ pub struct Controller {
     halt: Option<Ticket>,
     /// Neighbours that are not there.
     gone: BTreeSet<Symbol>,
+    /// The superior of an action that was recalled and has not been begun, until it is seen.
+    unseen: Option<Symbol>,
+    /// It was resumed, and that was before the start.
+    resumed_before: bool,
     outputs: VecDeque<Output<MotorCommand>>,
     ledger: Ledger,
 }
@@ -76,6 +80,8 @@ impl Controller {
             last_ticket: 0,
             halt: None,
             gone: BTreeSet::new(),
+            unseen: None,
+            resumed_before: false,
             outputs: VecDeque::new(),
             ledger: Ledger::default(),
         };

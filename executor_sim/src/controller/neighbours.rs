@@ -10,20 +10,24 @@ use crate::WORLD;
 impl Controller {
     /// A superior or the world has appeared or vanished.
     pub(super) fn neighbour(&mut self, now: Time, name: Symbol, there: bool) {
+        self.unseen.take_if(|superior| *superior == name);
         let news = if there {
             self.gone.remove(&name)
         } else {
             self.gone.insert(name.clone())
         };
-        if !news {
-            return;
+        if news {
+            self.changed(now, name, there);
         }
+        self.begin_what_waits(now);
+    }
+
+    fn changed(&mut self, now: Time, name: Symbol, there: bool) {
         if !there {
             // Who cannot be stopped must not move. What cannot be stopped runs to its end.
             if self.is_superior_of_active(&name) {
                 let _ = self.try_to_stop(now);
             }
-            self.waits_for_nobody(now, &name);
         }
         let what = if there {
             Happening::NeighbourBack { name }

@@ -66,6 +66,7 @@ impl Controller {
                 Some(cut) => self.settle(now, active, cut, account),
             },
         }
+        self.what_waits_stays_suspended();
         self.begin_what_waits(now);
     }
 

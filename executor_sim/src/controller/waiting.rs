@@ -1,9 +1,11 @@
-//! An action that is begun as soon as the robot stands.
+//! An action that is begun as soon as the robot stands and its superior is there.
 //!
-//! For a moment after a start nobody knows yet where it does. Whoever sends an instruction then is
-//! not refused for something that it cannot know.
+//! For a moment after a start nobody knows yet where the robot stands. Whoever sends an instruction then
+//! is not refused for something that it cannot know. Neither is a superior that counts as gone: it may
+//! have sent it before it went, or be back before that is known here. To give it its action back as
+//! suspended would have it resume that at once, and so on for as long as nobody sees it.
 
-use agent_core::model::{Symbol, Time};
+use agent_core::model::Time;
 use agent_core::protocol::{ActionId, Happening};
 use serde::{Deserialize, Serialize};
 
@@ -45,24 +47,13 @@ impl Controller {
         }
     }
 
-    /// What waits for that superior, which is gone, is not begun.
-    pub(super) fn waits_for_nobody(&mut self, now: Time, superior: &Symbol) {
-        let waiting = self.waiting.as_ref();
-        if waiting.is_none_or(|waiting| waiting.job.superior != *superior)
-            || self.set_waiting_aside(now)
-        {
-            return;
-        }
-        if let Some(waiting) = self.waiting.take() {
-            let reason = format!("`{superior}`, which wants it, is gone");
-            let blocked_by = Vec::new();
-            self.end_job(now, waiting.job, End::Failure { reason, blocked_by });
-        }
-    }
-
-    /// The robot stands: what has waited for that is begun.
+    /// What has waited for the robot to stand, or for its superior, is begun if neither is missing.
     pub(super) fn begin_what_waits(&mut self, now: Time) {
-        let Some(waiting) = self.waiting.take() else {
+        let missing = self.halt.is_some() || self.gone.contains(WORLD) || self.unseen.is_some();
+        let waiting = self
+            .waiting
+            .take_if(|waiting| !missing && !self.gone.contains(&waiting.job.superior));
+        let Some(waiting) = waiting else {
             return;
         };
         let Waiting {
@@ -81,6 +72,24 @@ impl Controller {
             self.faults.next_action()
         };
         self.begin(now, job, suspendable, resumed, fault);
+    }
+
+    /// What has waited was recalled: it begins once its superior is seen.
+    pub(super) fn what_waits_was_recalled(&mut self) {
+        let waiting = self.waiting.as_ref();
+        self.unseen = waiting.map(|waiting| waiting.job.superior.clone());
+        self.resumed_before = waiting.is_some_and(|waiting| waiting.resumed);
+    }
+
+    /// Nothing goes on in a robot that has just started: what was suspended once, and was asked for again
+    /// before the start, is suspended until it is asked for again.
+    pub(super) fn what_waits_stays_suspended(&mut self) {
+        if std::mem::take(&mut self.resumed_before)
+            && let Some(waiting) = self.waiting.take_if(|waiting| waiting.resumed)
+        {
+            self.report_suspended(&waiting.job);
+            self.memory.keep(waiting.job);
+        }
     }
 
     /// Has the motors do it, and says so.

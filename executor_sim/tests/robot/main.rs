@@ -2,7 +2,9 @@
 
 mod doors;
 mod faults;
+mod gone;
 mod instructions;
+mod lives;
 mod motion;
 mod museum;
 mod pair;

@@ -51,6 +51,8 @@ pub struct Pair {
     begun: usize,
     /// Whether this controller has heard that the robot stands.
     stood: bool,
+    /// Whether the superior is there, as whoever starts hears.
+    superior: bool,
     last_report: u64,
     /// Facts that were told to all.
     pub observed: Vec<FactChange>,
@@ -91,6 +93,7 @@ impl Pair {
             reports: Vec::new(),
             begun: 0,
             stood: false,
+            superior: true,
             last_report: 0,
             observed: Vec::new(),
         };
@@ -324,7 +327,17 @@ impl Pair {
         let fresh = controller(&self.faults);
         self.robot = Station::recall("executor".into(), self.epoch, fresh, &self.journal)
             .expect("what was written down can be read");
+        if self.superior {
+            self.superior_is_there(true);
+        }
         self.robot_says();
+    }
+
+    /// The superior has appeared or vanished.
+    pub fn superior_is_there(&mut self, there: bool) {
+        self.superior = there;
+        let name = "child".into();
+        self.arrive(Arrival::Input(Input::Neighbour { name, there }), None);
     }
 
     /// The controller's process dies, and its journal is lost with it.
@@ -399,4 +412,9 @@ impl Pair {
             })
             .collect()
     }
+}
+
+/// The last thing that was said of an action.
+pub fn last(pair: &Pair, number: u64) -> &Report {
+    pair.told(number).last().expect("something was said")
 }
