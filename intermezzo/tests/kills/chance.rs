@@ -2,10 +2,9 @@
 
 use std::time::Duration;
 
+use agent_core::model::Time;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-
-use crate::rig::ROLES;
 
 /// Chance that can be repeated.
 pub struct Chance(ChaCha8Rng);
@@ -78,7 +77,8 @@ impl Chance {
         self.0.next_u64()
     }
 
-    pub fn blow(&mut self) -> Blow {
+    /// Something that is done to one or two of `roles`, or to `up`.
+    pub fn blow(&mut self, roles: &[&'static str]) -> Blow {
         let when = match self.below(10) {
             0..4 => When::After(self.millis(0..600)),
             4 => When::OnAnswer,
@@ -87,9 +87,9 @@ impl Chance {
                 When::On(agent, event)
             }
         };
-        let mut strokes = vec![self.stroke()];
+        let mut strokes = vec![self.stroke(roles)];
         if self.one_in(3) {
-            let other = self.stroke();
+            let other = self.stroke(roles);
             if other.whom != strokes[0].whom {
                 strokes.push(other);
             }
@@ -101,10 +101,10 @@ impl Chance {
         }
     }
 
-    fn stroke(&mut self) -> Stroke {
+    fn stroke(&mut self, roles: &[&'static str]) -> Stroke {
         let whom = match self.below(8) {
             0 => "up",
-            number => ROLES[number % ROLES.len()],
+            number => roles[number % roles.len()],
         };
         let how = match self.below(6) {
             // Nobody looks after `up` itself.
@@ -118,6 +118,12 @@ impl Chance {
             _ => How::Kill,
         };
         Stroke { whom, how }
+    }
+
+    /// After how many seconds of the world a goal is no longer wanted, if ever.
+    pub fn deadline(&mut self) -> Option<Time> {
+        self.one_in(8)
+            .then(|| Time::from_secs(self.0.random_range(5.0..120.0)))
     }
 
     /// A task, and whether it has a deed.

@@ -59,7 +59,7 @@ impl Feeder {
                         _ => Urgency::Emergency,
                     },
                     priority: i32::try_from(chance.below(4)).unwrap(),
-                    deadline: None,
+                    deadline: chance.deadline(),
                 };
                 if ask(&client, goal).await {
                     let deed = has_deed.then(|| format!("(greet p{number})"));

@@ -1,9 +1,12 @@
 //! Every process of a robot is killed and frozen, at random and at the moments at which it hurts most,
 //! in the middle of emergencies within emergencies. The world goes on and counts, and an observer
 //! that only listens keeps the books: every goal that was accepted ends, none twice, none is lost,
-//! and what is to be done once is never done twice.
+//! and what is to be done once is never done twice. Meanwhile doors close, actions fail, stop late or refuse to stop,
+//! and some goals have deadlines, so that goals succeed, fail, and end as unknown.
 //!
-//! `KILLS=200 SEED=7 SPEED=20 cargo test --release -p intermezzo --test kills -- --nocapture`
+//! In another run the world's process is one of those that are killed.
+//!
+//! `KILLS=200 SEED=7 SPEED=20 cargo test --release -p intermezzo --test kills -- --nocapture --test-threads 1`
 #![allow(
     clippy::unwrap_used,
     clippy::panic,
@@ -12,6 +15,7 @@
 )]
 
 mod chance;
+mod doors;
 mod feeder;
 mod observer;
 mod rig;
@@ -25,15 +29,16 @@ use nix::sys::signal::Signal;
 use tokio::time::Instant;
 
 use chance::{Blow, Chance, How, Stroke, When};
+use doors::Doors;
 use feeder::{Accepted, Feeder};
 use observer::{Books, Observer};
-use rig::{ROLES, Rig};
+use rig::{Reality, Rig};
 use times::Times;
 
 /// The robot is there again within this, whatever was done to it: a frozen role is only noticed and killed
 /// after some seconds.
 const RECOVERY: Duration = Duration::from_secs(60);
-/// A recovery from kills alone that takes longer is worth a look.
+/// A recovery that takes longer is worth a look, unless nobody can know yet.
 const SLOW: Duration = Duration::from_secs(2);
 /// For a moment that may not come.
 const MOMENT: Duration = Duration::from_secs(3);
@@ -46,20 +51,30 @@ fn number(name: &str, usual: u64) -> u64 {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn whatever_is_killed_every_accepted_goal_ends_and_none_twice() {
-    let kills = usize::try_from(number("KILLS", 12)).unwrap();
+    run(Reality::Safe, 12).await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn and_so_it_is_if_the_world_s_process_dies_though_it_may_forget_its_last_moment() {
+    run(Reality::Mortal, 6).await;
+}
+
+async fn run(reality: Reality, usual_kills: u64) {
+    let kills = usize::try_from(number("KILLS", usual_kills)).unwrap();
     let seed = number("SEED", 1);
     let speed = number("SPEED", 20);
-    println!("{kills} kills, seed {seed}, {speed} times as fast as real time");
+    println!("{kills} kills, seed {seed}, {speed} times as fast as real time, {reality:?} reality");
     let mut chance = Chance::new(seed);
-    let mut rig = Rig::new(feeder::MOST_GOALS, speed as f64).await;
+    let mut rig = Rig::new(feeder::MOST_GOALS, speed as f64, seed, reality).await;
     let observer = Arc::new(Observer::new(&rig.session, &rig.keys).await);
     all_there(&rig, &observer, &[]).await;
     let feeder = Feeder::start(rig.client.clone(), observer.clone(), chance.seed());
+    let doors = Doors::start(rig.client.clone(), chance.seed());
     let mut times = Times::default();
     let begun = Instant::now();
     let mut done = 0;
     while done < kills {
-        let blow = chance.blow();
+        let blow = chance.blow(rig.roles());
         done += strike(&mut rig, &observer, &feeder, &blow, &mut times).await;
         println!(
             "{:>7.1} s  {done:>4} {:?} {}",
@@ -71,13 +86,16 @@ async fn whatever_is_killed_every_accepted_goal_ends_and_none_twice() {
         assert_no_faults(&rig, &observer);
     }
     feeder.stop();
+    let closed = doors.stop().await;
     all_there(&rig, &observer, &[]).await;
     let goals = feeder.goals().await;
-    let ended = observer
-        .until(AFTERMATH, |books| {
-            missing(books, &goals).is_empty().then_some(())
-        })
-        .await;
+    let ended = observer.until(AFTERMATH, |books| {
+        missing(books, &goals).is_empty().then_some(())
+    });
+    let ended = tokio::select! {
+        ended = ended => ended,
+        () = doors::are_open(&rig.client) => None,
+    };
     assert_no_faults(&rig, &observer);
     if ended.is_none() {
         let books = observer.books();
@@ -89,9 +107,11 @@ async fn whatever_is_killed_every_accepted_goal_ends_and_none_twice() {
         );
     }
     note_the_world(&rig, &observer).await;
-    println!("{}", audit(&observer.books(), &goals, seed));
+    println!("doors closed {closed} times");
+    println!("{}", audit(&observer.books(), &goals, seed, reality));
     println!("{times}");
-    assert!(goals.len() >= kills / 4, "too few goals to be a test");
+    // With a world that dies, and closed doors, few come to their end in the same time.
+    assert!(goals.len() >= kills / 8, "too few goals to be a test");
     rig.end().await;
 }
 
@@ -102,10 +122,10 @@ fn missing<'a>(books: &Books, goals: &'a [Accepted]) -> Vec<&'a str> {
 }
 
 /// Compares what was heard with the world's own books: a deed is done once if its goal succeeded, and
-/// never twice.
-fn audit(books: &Books, goals: &[Accepted], seed: u64) -> String {
+/// never twice. A world that was killed may have forgotten a deed that it had told of.
+fn audit(books: &Books, goals: &[Accepted], seed: u64, reality: Reality) -> String {
     let mut ends: BTreeMap<&str, usize> = BTreeMap::new();
-    let mut deeds = 0;
+    let (mut deeds, mut forgotten) = (0, 0);
     for goal in goals {
         let end = books.ends[&goal.id].values().next().unwrap();
         *ends.entry(end).or_default() += 1;
@@ -113,6 +133,10 @@ fn audit(books: &Books, goals: &[Accepted], seed: u64) -> String {
         let times = books.times(deed);
         deeds += times;
         let right = match end.as_str() {
+            "goal_succeeded" if times == 0 && reality == Reality::Mortal => {
+                forgotten += 1;
+                true
+            }
             "goal_succeeded" => times == 1,
             _ => times <= 1,
         };
@@ -124,17 +148,11 @@ fn audit(books: &Books, goals: &[Accepted], seed: u64) -> String {
     }
     let heard = |event: &str| books.counts.get(event).copied().unwrap_or_default();
     format!(
-        "{} goals accepted, all ended: {ends:?}; {deeds} deeds done; {} suspensions, {} resumptions",
+        "{} goals accepted, all ended: {ends:?}; {deeds} deeds done, {forgotten} forgotten by the world; {} suspensions, {} resumptions",
         goals.len(),
         heard("parent goal_suspended"),
         heard("parent goal_resumed"),
     )
-}
-
-/// Whether something was stopped without being killed.
-fn frozen(blow: &Blow) -> bool {
-    let mut strokes = blow.strokes.iter();
-    strokes.any(|stroke| matches!(stroke.how, How::Freeze(_)))
 }
 
 fn words(strokes: &[Stroke]) -> String {
@@ -162,7 +180,7 @@ fn assert_no_faults(rig: &Rig, observer: &Observer) {
 /// Waits until every role is there, those with an epoch in a start after that.
 async fn all_there(rig: &Rig, observer: &Observer, before: &[(&'static str, Option<u64>)]) {
     let there = observer.until(RECOVERY, |books| {
-        let all = ROLES.iter().all(|role| books.epoch(role).is_some());
+        let all = rig.roles().iter().all(|role| books.epoch(role).is_some());
         let new = before
             .iter()
             .all(|(role, epoch)| books.epoch(role) > *epoch);
@@ -198,8 +216,12 @@ async fn strike(
         }
         When::OnAnswer => feeder.next_answer(MOMENT).await,
     }
-    let epochs = ROLES.map(|role| (role, observer.books().epoch(role)));
-    let begun = Instant::now();
+    let epochs: Vec<_> = {
+        let books = observer.books();
+        let roles = rig.roles().iter();
+        roles.map(|role| (*role, books.epoch(role))).collect()
+    };
+    let mut begun = Instant::now();
     let mut struck = 0;
     let mut new: Vec<(&'static str, Option<u64>)> = Vec::new();
     let mut up_killed = false;
@@ -217,9 +239,10 @@ async fn strike(
         times.struck(stroke);
         match stroke.how {
             How::Kill if stroke.whom == "up" => up_killed = true,
-            How::Kill => new.extend(epochs.iter().filter(|(role, _)| *role == stroke.whom)),
             How::Freeze(Some(time)) => thaws.push((begun + time, stroke.whom)),
-            How::Freeze(None) => {}
+            How::Kill | How::Freeze(None) => {
+                new.extend(epochs.iter().filter(|(role, _)| *role == stroke.whom));
+            }
         }
     }
     thaws.sort();
@@ -232,25 +255,26 @@ async fn strike(
         }
         rig.up_has_ended().await;
         rig.start_up();
-        new = epochs.to_vec();
+        new = epochs;
     }
     for (at, whom) in thaws {
         tokio::time::sleep_until(at).await;
         // It may have been killed meanwhile, being frozen.
-        rig.signal(whom, Signal::SIGCONT);
+        if rig.signal(whom, Signal::SIGCONT) && !up_killed {
+            begun = Instant::now();
+        }
     }
     if blow.rest && struck > 0 {
         all_there(rig, observer, &new).await;
         let ready = Instant::now();
-        if ready - begun > SLOW && !frozen(blow) {
+        let for_good = |stroke: &Stroke| matches!(stroke.how, How::Freeze(None));
+        if ready - begun > SLOW && !blow.strokes.iter().any(for_good) {
             println!("           slow:\n{}", rig.told());
         }
         let moved = observer
             .until(MOMENT, |books| books.moved.filter(|moved| *moved >= ready))
             .await;
-        if !frozen(blow) {
-            times.recovered(up_killed, ready - begun, moved.map(|moved| moved - begun));
-        }
+        times.recovered(blow, ready - begun, moved.map(|moved| moved - begun));
     }
     struck
 }

@@ -17,8 +17,9 @@ pub struct Books {
     events: BTreeMap<(String, u64), Value>,
     /// When the memory of each agent began.
     lines: BTreeMap<String, u64>,
-    /// What was done to the world, by number.
-    pub done: BTreeMap<u64, Value>,
+    /// What was done to the world. A world that was killed may have forgotten the last of it, and count
+    /// on from before that: so not by number.
+    done: BTreeMap<String, Value>,
     /// The ends of each goal of the parent, by the numbers of the events.
     pub ends: BTreeMap<String, BTreeMap<u64, String>>,
     /// The starts of each role that are there.
@@ -82,7 +83,8 @@ impl Books {
     }
 
     fn seen(&mut self, odometer_m: f64) {
-        if odometer_m > self.odometer_m {
+        // One that was killed may have forgotten some of the way.
+        if odometer_m.to_bits() != self.odometer_m.to_bits() {
             self.moved = Some(Instant::now());
         }
         self.odometer_m = odometer_m;
@@ -96,8 +98,7 @@ impl Books {
     /// The world's own books, which go back only so far.
     pub fn world(&mut self, done: &[Value]) {
         for one in done {
-            self.done
-                .insert(one["number"].as_u64().unwrap(), one.clone());
+            self.done.insert(one.to_string(), one.clone());
         }
     }
 

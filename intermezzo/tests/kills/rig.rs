@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use agent_link::session::{self, Role};
-use agent_link::{Client, Keys, Session};
+use agent_link::{Client, ClientError, Keys, Session};
 use nix::errno::Errno;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
@@ -18,8 +18,17 @@ use tokio::process::{Child, Command};
 
 /// Nothing that is to come takes longer.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// The roles whose processes are killed.
-pub const ROLES: [&str; 3] = ["parent", "child", "executor"];
+/// The roles of a robot, and what else `up` looks after if the world is not elsewhere.
+const ROLES: [&str; 4] = ["parent", "child", "executor", "world"];
+
+/// Where the world's process is.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Reality {
+    /// Nothing happens to it, as nothing happens to reality.
+    Safe,
+    /// It is one of the roles, and dies with them.
+    Mortal,
+}
 
 /// Everything that runs.
 pub struct Rig {
@@ -29,7 +38,11 @@ pub struct Rig {
     folder: TempDir,
     endpoint: String,
     place: PathBuf,
-    _world: Child,
+    speed: f64,
+    /// The seed of what goes wrong with its actions.
+    faults: u64,
+    /// If it is not one of the roles.
+    world: Option<Child>,
     up: Option<Child>,
     /// The processes of the roles, as `up` has told.
     pids: Arc<Mutex<Pids>>,
@@ -72,7 +85,7 @@ impl Pids {
 impl Rig {
     /// Starts router, world and robot; the museum with `persons` who can be greeted, each greeting a deed
     /// that is done once.
-    pub async fn new(persons: usize, speed: f64) -> Self {
+    pub async fn new(persons: usize, speed: f64, faults: u64, reality: Reality) -> Self {
         let folder = TempDir::new().unwrap();
         let place = folder.path().join("place");
         place_with(&place, persons);
@@ -80,15 +93,6 @@ impl Rig {
         let session = session::open(&listen, None).await.unwrap();
         let endpoint = session::endpoints(&session).await.remove(0);
         let keys = Keys::new("robot").unwrap();
-        let world = Command::new(env!("CARGO_BIN_EXE_intermezzo"))
-            .args(["role", "world", "--until-stdin-ends"])
-            .args(["--robot", "robot", "--connect", &endpoint])
-            .args(["--speed", &speed.to_string(), "--place"])
-            .arg(&place)
-            .stdin(Stdio::piped())
-            .kill_on_drop(true)
-            .spawn()
-            .unwrap();
         let mut rig = Self {
             client: Client::new(&session, &keys),
             session,
@@ -96,18 +100,49 @@ impl Rig {
             folder,
             endpoint,
             place,
-            _world: world,
+            speed,
+            faults,
+            world: None,
             up: None,
             pids: Arc::default(),
         };
+        if reality == Reality::Safe {
+            rig.world = Some(rig.start_world());
+        }
         rig.start_up();
         rig
     }
 
+    fn start_world(&self) -> Child {
+        Command::new(env!("CARGO_BIN_EXE_intermezzo"))
+            .args(["role", "world", "--until-stdin-ends"])
+            .args(["--robot", "robot", "--connect", &self.endpoint])
+            .args(["--speed", &self.speed.to_string(), "--place"])
+            .arg(&self.place)
+            .stdin(Stdio::piped())
+            .kill_on_drop(true)
+            .spawn()
+            .unwrap()
+    }
+
+    /// The roles whose processes are killed.
+    pub fn roles(&self) -> &'static [&'static str] {
+        match self.world {
+            Some(_) => &ROLES[..3],
+            None => &ROLES,
+        }
+    }
+
     /// Starts `up`.
     pub fn start_up(&mut self) {
+        let world: &[&str] = match self.world {
+            Some(_) => &["--no-world"],
+            None => &["--speed", &self.speed.to_string()],
+        };
         let mut up = Command::new(env!("CARGO_BIN_EXE_intermezzo"))
-            .args(["up", "--json", "--no-world", "--hang-limit", "2"])
+            .args(["up", "--json", "--hang-limit", "2"])
+            .args(["--faults", &self.faults.to_string()])
+            .args(world)
             .args(["--robot", "robot", "--connect", &self.endpoint, "--state"])
             .arg(self.folder.path().join("state"))
             .arg(&self.place)
@@ -171,8 +206,15 @@ impl Rig {
 
     /// The world's own books, as far back as they go.
     pub async fn done(&self) -> Vec<Value> {
-        let belief = self.client.look("world", agent_link::View::Belief).await;
-        belief.unwrap()["done"].as_array().unwrap().clone()
+        let begun = tokio::time::Instant::now();
+        loop {
+            match self.client.look("world", agent_link::View::Belief).await {
+                Ok(belief) => return belief["done"].as_array().unwrap().clone(),
+                // It is just being started again.
+                Err(ClientError::NoAnswer { .. }) if begun.elapsed() < PATIENCE => {}
+                Err(error) => panic!("the world does not say what was done to it: {error}"),
+            }
+        }
     }
 
     /// Ends `up` in order, and waits until nothing is left of the robot.

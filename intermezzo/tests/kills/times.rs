@@ -4,19 +4,50 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
-use crate::chance::{How, Stroke};
+use crate::chance::{Blow, How, Stroke};
 
 /// What was measured.
 #[derive(Debug, Default)]
 pub struct Times {
     strokes: BTreeMap<String, usize>,
-    /// Of roles: from the kill until all are there.
+    measured: BTreeMap<Kind, Recoveries>,
+}
+
+/// From what a robot recovers.
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+enum Kind {
+    /// From the kill of a role or two.
+    Roles,
+    /// From that of `up`, by a new one.
+    Up,
+    /// From the moment at which the last that was frozen is woken up.
+    Thawed,
+    /// From the moment at which a role is frozen that nobody wakes up.
+    Frozen,
+}
+
+/// Of one kind.
+#[derive(Debug, Default)]
+struct Recoveries {
+    /// Until all are there.
     ready: Vec<Duration>,
     /// … and until the robot is seen to move after that.
     moved: Vec<Duration>,
-    /// The same where `up` was killed too.
-    up_ready: Vec<Duration>,
-    up_moved: Vec<Duration>,
+}
+
+impl Kind {
+    fn of(blow: &Blow) -> Self {
+        let any = |what: fn(&Stroke) -> bool| blow.strokes.iter().any(what);
+        if any(|stroke| stroke.whom == "up" && matches!(stroke.how, How::Kill)) {
+            Self::Up
+        } else if any(|stroke| matches!(stroke.how, How::Freeze(None))) {
+            Self::Frozen
+        } else if any(|stroke| matches!(stroke.how, How::Freeze(Some(_)))) {
+            Self::Thawed
+        } else {
+            Self::Roles
+        }
+    }
 }
 
 impl Times {
@@ -31,14 +62,10 @@ impl Times {
     }
 
     /// The robot is there again; it may have had nothing to do.
-    pub fn recovered(&mut self, up: bool, ready: Duration, moved: Option<Duration>) {
-        let (all_ready, all_moved) = if up {
-            (&mut self.up_ready, &mut self.up_moved)
-        } else {
-            (&mut self.ready, &mut self.moved)
-        };
-        all_ready.push(ready);
-        all_moved.extend(moved);
+    pub fn recovered(&mut self, blow: &Blow, ready: Duration, moved: Option<Duration>) {
+        let recoveries = self.measured.entry(Kind::of(blow)).or_default();
+        recoveries.ready.push(ready);
+        recoveries.moved.extend(moved);
     }
 }
 
@@ -47,13 +74,16 @@ impl fmt::Display for Times {
         for (what, times) in &self.strokes {
             writeln!(f, "{times:>5} × {what}")?;
         }
-        for (what, times) in [
-            ("roles killed, all there again", &self.ready),
-            ("roles killed, robot moves again", &self.moved),
-            ("`up` killed, all there again", &self.up_ready),
-            ("`up` killed, robot moves again", &self.up_moved),
-        ] {
-            writeln!(f, "{what}: {}", summary(times))?;
+        for (kind, recoveries) in &self.measured {
+            let from = match kind {
+                Kind::Roles => "roles killed",
+                Kind::Up => "`up` killed",
+                Kind::Thawed => "woken up",
+                Kind::Frozen => "frozen for good",
+            };
+            let (ready, moved) = (summary(&recoveries.ready), summary(&recoveries.moved));
+            writeln!(f, "{from}, all there again: {ready}")?;
+            writeln!(f, "{from}, robot moves again: {moved}")?;
         }
         Ok(())
     }
@@ -69,9 +99,9 @@ fn summary(times: &[Duration]) -> String {
     match sorted.len() {
         0 => "never measured".to_owned(),
         count => format!(
-            "median {} ms, p99 {} ms, longest {} ms ({count} times)",
+            "median {} ms, p95 {} ms, longest {} ms ({count} times)",
             at(50),
-            at(99),
+            at(95),
             at(100)
         ),
     }
