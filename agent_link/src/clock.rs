@@ -173,11 +173,12 @@ impl Clock {
         if !(speed.is_finite() && speed > 0.0) {
             return Err(ClockError::Speed(speed));
         }
-        let since_origin_us = unix_us().saturating_sub(origin_unix_us);
+        let (anchor, unix_us) = both_clocks();
+        let since_origin_us = unix_us.saturating_sub(origin_unix_us);
         Ok(Self {
             origin_unix_us,
             speed,
-            anchor: Instant::now(),
+            anchor,
             at_anchor: Time::from_secs(since_origin_us as f64 / 1e6 * speed),
         })
     }
@@ -290,6 +291,24 @@ fn read_note(file: &Path) -> Result<Option<ClockNote>, ClockError> {
         return Err(unread(format!("a speed of {}", note.speed)));
     }
     Ok(Some(note))
+}
+
+/// The monotonic clock and the date at one moment. A process may lose the processor between reading
+/// the one and the other, and would be late by that for as long as it lives; so the closest of some
+/// readings counts.
+fn both_clocks() -> (Instant, u64) {
+    const READINGS: usize = 8;
+    let readings = (0..READINGS).map(|_| {
+        let before = Instant::now();
+        let date_us = unix_us();
+        let took = before.elapsed();
+        (took, before + took / 2, date_us)
+    });
+    let closest = readings.min_by_key(|(took, ..)| *took);
+    closest.map_or_else(
+        || (Instant::now(), unix_us()),
+        |(_, anchor, date_us)| (anchor, date_us),
+    )
 }
 
 /// The date, in microseconds since 1970.

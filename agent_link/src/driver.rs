@@ -109,9 +109,16 @@ where
     // Once it is to end: when it does so at the latest.
     let mut last: Option<Instant> = None;
     let result = loop {
+        // What stops something goes out before anything is made ready for the journal.
+        if let Err(error) = send(&mut station, &mut link, local.write) {
+            break Err(error);
+        }
         write(&mut station, writer.as_mut(), &mut link, waits_for_the_disk);
         if let Err(error) = send(&mut station, &mut link, local.write) {
             break Err(error);
+        }
+        if snapshots.is_some() && station.machine().is_worth_showing() {
+            link.snapshot(clock.now(), station.machine().snapshot());
         }
         if last.is_some() && station.machine().rests() {
             break Ok(());

@@ -40,6 +40,12 @@ pub trait Inspect {
     fn snapshot(&self) -> Value {
         self.status()
     }
+
+    /// Whether something has happened since this was asked last that a snapshot should show at
+    /// once. Asked only where snapshots are published.
+    fn is_worth_showing(&self) -> bool {
+        false
+    }
 }
 
 /// One of the ways to look inside.

@@ -1,8 +1,8 @@
 //! The child as a program: arguments, then drive.
 
-use agent_core::agent::Agent;
+use agent_core::agent::{Agent, Configuration};
 use agent_link::options::{LinkOptions, PlaceOptions, PlannerOptions};
-use agent_link::{RoleError, Wiring, drive_agent_in_world, next_epoch};
+use agent_link::{Keys, RoleError, Wiring, drive_agent_in_world, next_epoch};
 use clap::Args;
 use maps::{NotInOrder, Place};
 
@@ -48,11 +48,6 @@ pub async fn run(args: ChildArgs) -> Result<(), ProgramError> {
     let keys = args.link.keys().map_err(RoleError::from)?;
     let memory = args.link.memory(&args.name, place.fingerprint())?;
     let epoch = next_epoch(&memory).map_err(RoleError::from)?;
-    let wiring = Wiring {
-        executors: vec![args.executor.clone()],
-        takes_facts: true,
-        ..Wiring::new(&keys, &args.name, epoch)
-    };
     let configuration = crate::configuration(
         place.site(),
         place.node(),
@@ -61,7 +56,18 @@ pub async fn run(args: ChildArgs) -> Result<(), ProgramError> {
         &args.name,
         epoch,
     )?;
+    let wiring = wiring(&keys, &configuration);
     let agent = Agent::new(configuration, args.planner.make());
     drive_agent_in_world(agent, memory, wiring, &args.link).await?;
     Ok(())
+}
+
+/// What a child of that configuration is connected to.
+pub fn wiring(keys: &Keys, configuration: &Configuration) -> Wiring {
+    let executors = configuration.executors.all();
+    Wiring {
+        executors: executors.iter().map(ToString::to_string).collect(),
+        takes_facts: true,
+        ..Wiring::new(keys, configuration.name.as_str(), configuration.epoch)
+    }
 }

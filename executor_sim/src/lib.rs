@@ -27,7 +27,7 @@ pub use profile::MoverSpec;
 pub use setup::SetupError;
 pub use signal::{MotorCommand, Pose, Sensor, Ticket};
 pub use simulated_robot::SimulatedRobot;
-pub use world::{Doing, Done, World};
+pub use world::{Doing, Done, Motion, World};
 
 /// The world's name among the neighbours of a controller.
 pub const WORLD: &str = "world";

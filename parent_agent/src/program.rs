@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use agent_core::agent::Agent;
+use agent_core::agent::{Agent, Configuration};
 use agent_core::model::Symbol;
 use agent_link::options::{LimitOptions, LinkOptions, PlaceOptions, PlannerOptions};
-use agent_link::{RoleError, Wiring, drive_agent_in_world, next_epoch};
+use agent_link::{Keys, RoleError, Wiring, drive_agent_in_world, next_epoch};
 use clap::Args;
 use maps::{NotInOrder, Place};
 
@@ -62,17 +62,24 @@ pub async fn run(args: ParentArgs) -> Result<(), ProgramError> {
         epoch,
     )?;
     configuration.policy.most_waiting = args.limits.most_waiting;
-    let executors = configuration.executors.all();
     let wiring = Wiring {
-        executors: executors.iter().map(ToString::to_string).collect(),
-        takes_goals: true,
         limits: args.limits.limits(),
-        takes_facts: true,
-        ..Wiring::new(&keys, crate::NAME, epoch)
+        ..wiring(&keys, &configuration)
     };
     let agent = Agent::new(configuration, args.planner.make());
     drive_agent_in_world(agent, memory, wiring, &args.link).await?;
     Ok(())
+}
+
+/// What a parent of that configuration is connected to.
+pub fn wiring(keys: &Keys, configuration: &Configuration) -> Wiring {
+    let executors = configuration.executors.all();
+    Wiring {
+        executors: executors.iter().map(ToString::to_string).collect(),
+        takes_goals: true,
+        takes_facts: true,
+        ..Wiring::new(keys, crate::NAME, configuration.epoch)
+    }
 }
 
 fn wing(text: &str) -> Result<(Symbol, Symbol), String> {

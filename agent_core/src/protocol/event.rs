@@ -114,6 +114,13 @@ pub enum Happening {
         /// What.
         action: Action,
     },
+    /// The executor has told its motors to stop: from then on a robot brakes, or falls silent.
+    ActionStopping {
+        /// Which execution.
+        id: ActionId,
+        /// What.
+        action: Action,
+    },
     /// The executor has stopped.
     ActionSuspended {
         /// Which execution.

@@ -69,6 +69,10 @@ enum What {
         action_id: Text<ActionId>,
         action: Text<Action>,
     },
+    ActionStopping {
+        action_id: Text<ActionId>,
+        action: Text<Action>,
+    },
     ActionSuspended {
         action_id: Text<ActionId>,
         action: Text<Action>,
@@ -238,6 +242,10 @@ fn to_wire(what: &protocol::Happening) -> What {
             let (action_id, action) = pair(id, action);
             What::ActionStarted { action_id, action }
         }
+        Core::ActionStopping { id, action } => {
+            let (action_id, action) = pair(id, action);
+            What::ActionStopping { action_id, action }
+        }
         Core::ActionSuspended { id, action } => {
             let (action_id, action) = pair(id, action);
             What::ActionSuspended { action_id, action }
@@ -330,6 +338,10 @@ fn from_wire(what: What) -> protocol::Happening {
         },
         What::PlanRevised { why, kept } => Core::PlanRevised { why, kept },
         What::ActionStarted { action_id, action } => Core::ActionStarted {
+            id: action_id.0,
+            action: action.0,
+        },
+        What::ActionStopping { action_id, action } => Core::ActionStopping {
             id: action_id.0,
             action: action.0,
         },

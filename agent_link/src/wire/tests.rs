@@ -155,6 +155,7 @@ fn happening() -> impl Strategy<Value = Happening> {
             }),
         (words(), any::<usize>()).prop_map(|(why, kept)| H::PlanRevised { why, kept }),
         execution().prop_map(|(id, action)| H::ActionStarted { id, action }),
+        execution().prop_map(|(id, action)| H::ActionStopping { id, action }),
         execution().prop_map(|(id, action)| H::ActionSuspended { id, action }),
         execution().prop_map(|(id, action)| H::ActionResumed { id, action }),
         execution().prop_map(|(id, action)| H::ActionRolledBack { id, action }),

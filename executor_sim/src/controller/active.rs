@@ -1,7 +1,7 @@
 //! The action that runs.
 
 use agent_core::model::Time;
-use agent_core::protocol::ActionId;
+use agent_core::protocol::{ActionId, Happening};
 use serde::{Deserialize, Serialize};
 
 use super::memory::Record;
@@ -109,7 +109,17 @@ impl Controller {
             active.errand_at = Some(now + delay);
         } else {
             self.stop_motors();
+            self.tell_stopping(now);
         }
         true
+    }
+
+    /// The motors have been told to stop the active action, because a superior wants it suspended.
+    pub(super) fn tell_stopping(&mut self, now: Time) {
+        let Some(job) = self.active.as_ref().map(|active| active.begun.job.clone()) else {
+            return;
+        };
+        let (id, action) = (job.id.clone(), job.action.clone());
+        self.event(now, &job, Happening::ActionStopping { id, action });
     }
 }

@@ -192,10 +192,14 @@ impl Controller {
         if let Some(active) = &mut self.active
             && active.errand_at.is_some_and(|time| time <= now)
         {
-            if active.begun.run == Run::Going {
+            let asked = active.begun.run == Run::Stopping;
+            if !asked {
                 active.begun.run = Run::Failing;
             }
             self.stop_motors();
+            if asked {
+                self.tell_stopping(now);
+            }
         }
     }
 

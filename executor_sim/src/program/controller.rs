@@ -1,7 +1,7 @@
 //! The robot's controller as a program.
 
 use agent_link::options::{LinkOptions, PlaceOptions};
-use agent_link::{RoleError, Wiring, drive_in_world, next_epoch};
+use agent_link::{Keys, RoleError, Wiring, drive_in_world, next_epoch};
 use clap::Args;
 
 use super::{EXECUTOR, ProgramError, read};
@@ -41,11 +41,15 @@ pub async fn run(args: ControllerArgs) -> Result<(), ProgramError> {
     let keys = args.link.keys().map_err(RoleError::from)?;
     let memory = args.link.memory(EXECUTOR, place.fingerprint())?;
     let epoch = next_epoch(&memory).map_err(RoleError::from)?;
-    let wiring = Wiring {
+    drive_in_world(controller, memory, wiring(&keys, epoch), &args.link).await?;
+    Ok(())
+}
+
+/// What a controller is connected to.
+pub fn wiring(keys: &Keys, epoch: u64) -> Wiring {
+    Wiring {
         local_in: Some(keys.executor_sensor()),
         local_out: Some(keys.world_command()),
-        ..Wiring::new(&keys, EXECUTOR, epoch)
-    };
-    drive_in_world(controller, memory, wiring, &args.link).await?;
-    Ok(())
+        ..Wiring::new(keys, EXECUTOR, epoch)
+    }
 }

@@ -8,8 +8,9 @@ use agent_link::RoleError;
 use agent_link::options::PlaceOptions;
 use clap::{Args, Subcommand};
 
-pub use controller::{ControllerArgs, run as run_controller};
-pub use world::{WorldArgs, run as run_world};
+pub use controller::{ControllerArgs, run as run_controller, wiring as wiring_of_controller};
+pub use shown_world::ShownWorld;
+pub use world::{WorldArgs, run as run_world, wiring as wiring_of_world};
 
 use crate::{Floor, FloorError, SetupError, VocabularyError};
 

@@ -1,5 +1,7 @@
 //! A world that can be looked at.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use agent_core::model::Time;
 use agent_core::protocol::{Durable, Input, Machine, Output, Reply, Row, Rows, Unreadable};
 use agent_link::{Clock, Inspect};
@@ -13,9 +15,22 @@ const SHOWN: usize = 16;
 
 /// A [`World`] and the clock that says where in its motions it is: the world itself has none, and
 /// between two events everything in it is a formula of the time.
-pub(super) struct ShownWorld {
-    pub(super) world: World,
-    pub(super) clock: Clock,
+pub struct ShownWorld {
+    world: World,
+    clock: Clock,
+    /// Its motion has changed since that was asked last.
+    changed: AtomicBool,
+}
+
+impl ShownWorld {
+    /// A world that is shown as it is by this clock.
+    pub fn new(world: World, clock: Clock) -> Self {
+        Self {
+            world,
+            clock,
+            changed: AtomicBool::new(true),
+        }
+    }
 }
 
 impl Durable for ShownWorld {
@@ -41,7 +56,11 @@ impl Machine for ShownWorld {
     }
 
     fn poll_output(&mut self) -> Option<Output<Sensor>> {
-        self.world.poll_output()
+        let output = self.world.poll_output();
+        if let Some(Output::Local(Sensor::Pose(_))) = output {
+            self.changed.store(true, Ordering::Relaxed);
+        }
+        output
     }
 
     fn wake_at(&self) -> Option<Time> {
@@ -58,8 +77,13 @@ impl Machine for ShownWorld {
 }
 
 impl Inspect for ShownWorld {
+    fn is_worth_showing(&self) -> bool {
+        self.changed.swap(false, Ordering::Relaxed)
+    }
+
     fn status(&self) -> Value {
         let now = self.clock.now();
+        let (motion, since) = self.world.motion();
         let pose = self.world.pose(now);
         json!({
             "t_s": now.secs(),
@@ -69,6 +93,8 @@ impl Inspect for ShownWorld {
             "position_m": pose.position_m,
             "heading_rad": pose.heading_rad,
             "speed_m_s": pose.speed_m_s,
+            "motion": motion,
+            "motion_since_t_s": since.secs(),
             "speaking": pose.speaking,
             "odometer_m": self.world.odometer_m(now),
             "done_count": self.world.done_count(),

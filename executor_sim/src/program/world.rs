@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use agent_link::options::{LinkOptions, PlaceOptions};
-use agent_link::{Clock, Memory, RoleError, Wiring, drive, next_epoch, session};
+use agent_link::{Clock, Keys, Memory, RoleError, Wiring, drive, next_epoch, session};
 use clap::Args;
 
 use super::shown_world::ShownWorld;
@@ -52,19 +52,15 @@ async fn drive_world(world: World, memory: Memory, args: &WorldArgs) -> Result<(
     let period = WORLD_S_BETWEEN_SNAPSHOTS / args.speed;
     let period = Duration::try_from_secs_f64(period).unwrap_or(LONGEST_PERIOD);
     let wiring = Wiring {
-        takes_facts: true,
-        waits_for_the_disk: false,
-        local_in: Some(keys.world_command()),
-        local_out: Some(keys.executor_sensor()),
         snapshots_every: Some(period.clamp(SHORTEST_PERIOD, LONGEST_PERIOD)),
-        ..Wiring::new(&keys, WORLD, next_epoch(&memory)?)
+        ..wiring(&keys, next_epoch(&memory)?)
     };
     let session = args.link.open().await?;
     let service = clock.serve(&session, &keys).await;
     let driven = match service {
         Err(error) => Err(error.into()),
         Ok(_service) => {
-            let world = ShownWorld { world, clock };
+            let world = ShownWorld::new(world, clock);
             let driven = drive(world, memory, wiring, &session, clock, args.link.shutdown()).await;
             driven.map(|_| ()).map_err(RoleError::from)
         }
@@ -74,4 +70,15 @@ async fn drive_world(world: World, memory: Memory, args: &WorldArgs) -> Result<(
         clock.stop(file)?;
     }
     driven
+}
+
+/// What a world is connected to.
+pub fn wiring(keys: &Keys, epoch: u64) -> Wiring {
+    Wiring {
+        takes_facts: true,
+        waits_for_the_disk: false,
+        local_in: Some(keys.world_command()),
+        local_out: Some(keys.executor_sensor()),
+        ..Wiring::new(keys, WORLD, epoch)
+    }
 }

@@ -89,6 +89,12 @@ impl Body {
         self.motion.is_none()
     }
 
+    /// Whether it is coming to rest before it was to.
+    pub(super) fn is_braking(&self) -> bool {
+        let motion = self.motion.as_ref();
+        motion.is_some_and(|motion| motion.ending != Ending::Arrived)
+    }
+
     /// Where it stands; where it stood last, if it moves.
     pub(super) fn place(&self) -> &Place {
         &self.place

@@ -3,6 +3,7 @@
 mod body;
 mod done;
 mod durable;
+mod motion;
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -11,11 +12,12 @@ use agent_core::protocol::{Input, Ledger, Machine, Output, Reply};
 use nalgebra::Isometry2;
 
 use crate::refusal::refuse;
-use crate::{Floor, MotorCommand, MoverSpec, Place, Pose, Sensor, SetupError, Ticket};
+use crate::{Floor, MotorCommand, MoverSpec, Place, Sensor, SetupError, Ticket};
 use body::{Body, Ending};
 use done::Chronicle;
 
 pub use done::{Doing, Done};
+pub use motion::Motion;
 
 /// What is there whether or not anybody controls it.
 ///
@@ -41,6 +43,8 @@ pub struct World {
     chronicle: Chronicle,
     /// When something was last seen to.
     now: Time,
+    /// When the motion, or the voice, last changed.
+    changed_at: Time,
     outputs: VecDeque<Sensor>,
     ledger: Ledger,
 }
@@ -94,6 +98,7 @@ impl World {
             tells: true,
             chronicle: Chronicle::default(),
             now: Time::ZERO,
+            changed_at: Time::ZERO,
             outputs: VecDeque::new(),
             ledger: Ledger::default(),
         };
@@ -151,32 +156,6 @@ impl World {
         &self.doors
     }
 
-    /// A snapshot for displays; any time up to the next event will do.
-    pub fn pose(&self, now: Time) -> Pose {
-        let seen = self.body.seen(&self.floor, now);
-        let position = seen.isometry.translation.vector;
-        let (node, arc, fraction) = match seen.place {
-            Place::Node { node } => (Some(node), None, None),
-            Place::Arc { arc, offset_m, .. } => {
-                let fraction = self
-                    .floor
-                    .passage(&arc)
-                    .map(|passage| offset_m / passage.length_m);
-                (None, Some(arc), fraction)
-            }
-        };
-        Pose {
-            at: now,
-            position_m: [position.x, position.y],
-            heading_rad: seen.isometry.rotation.angle(),
-            speed_m_s: seen.speed_m_s,
-            arc,
-            fraction,
-            node,
-            speaking: self.speech.is_some(),
-        }
-    }
-
     fn next_due(&self) -> Option<(Time, Due)> {
         [
             self.body.due().map(|time| (time, Due::Motion)),
@@ -203,6 +182,7 @@ impl World {
                 Due::Speech => {
                     if let Some(span) = self.speech.take() {
                         self.note_speech(time, &span, true);
+                        self.changed_at = time;
                         let ticket = span.ticket;
                         self.outputs.push_back(Sensor::SpeechEnded { ticket });
                     }
@@ -260,11 +240,6 @@ impl World {
         let ticket = span.ticket;
         let spoken_s = now.since(span.begun).secs();
         self.outputs.push_back(Sensor::Hushed { ticket, spoken_s });
-    }
-
-    fn tell_pose(&mut self, now: Time) {
-        let pose = self.pose(now);
-        self.outputs.push_back(Sensor::Pose(pose));
     }
 
     fn tell_if_halted(&mut self) {
@@ -375,7 +350,10 @@ impl World {
                 self.stop_everything(now);
                 self.tell_if_halted();
             }
-            MotorCommand::Look => self.tell_pose(now),
+            MotorCommand::Look => {
+                let pose = self.pose(now);
+                self.outputs.push_back(Sensor::Pose(pose));
+            }
         }
     }
 

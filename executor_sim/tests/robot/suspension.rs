@@ -1,6 +1,8 @@
 //! Suspending, resuming, and what is kept between.
 
-use agent_core::protocol::{Answer, Machine, Report};
+use agent_core::model::Time;
+use agent_core::protocol::{Answer, Event, Happening, Machine, Report};
+use executor_sim::Motion;
 
 use crate::rig::{Rig, id, is_success, is_suspended, reason};
 
@@ -170,4 +172,30 @@ fn a_robot_whose_controller_is_about_to_end_stops_and_remembers_what_it_did() {
     assert_eq!(rig.resume(1), Answer::Accepted);
     rig.until(60.0);
     assert!(is_success(rig.told(1).last().expect("an end")));
+}
+
+#[test]
+fn it_is_told_when_the_motors_are_told_to_stop_and_seen_when_the_body_does() {
+    let mut rig = Rig::new("n1");
+    rig.execute(1, "move n1 n6 arc5");
+    rig.until(3.0);
+    assert_eq!(rig.robot.world().motion(), (Motion::Driving, Time::ZERO));
+    rig.suspend(1);
+    let stopping = |event: &&Event| matches!(event.what, Happening::ActionStopping { .. });
+    let told: Vec<_> = rig.events.iter().filter(stopping).collect();
+    assert_eq!(told.len(), 1);
+    assert_eq!(told.first().map(|event| event.at), Some(rig.now));
+    let braking = (Motion::Braking, rig.now);
+    assert_eq!(rig.robot.world().motion(), braking);
+    // Once is enough.
+    rig.suspend(1);
+    assert_eq!(rig.events.iter().filter(stopping).count(), 1);
+    rig.until(20.0);
+    let (motion, since) = rig.robot.world().motion();
+    assert_eq!(motion, Motion::Still);
+    // From 1 m/s, at 1 m/s².
+    assert!(
+        (since.since(braking.1).secs() - 1.0).abs() < 1e-3,
+        "{since:?}"
+    );
 }

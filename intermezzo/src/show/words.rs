@@ -118,9 +118,9 @@ pub(super) fn of_parent(goal: &str, what: &Happening, observable: &Observable) -
             line('×', DIM, format!("will not resume {action}"))
         }
         Happening::BeliefChanged { changes } => line('i', ASIDE, news(changes, observable)?),
-        Happening::ActionSuspended { .. } | Happening::ActionFinished { failure: None, .. } => {
-            return None;
-        }
+        Happening::ActionStopping { .. }
+        | Happening::ActionSuspended { .. }
+        | Happening::ActionFinished { failure: None, .. } => return None,
     })
 }
 

@@ -120,12 +120,15 @@ impl Mailboxes {
         }
     }
 
-    /// By receiver of instructions, up to where answers have been written down, whether the last one that
-    /// came is `included` in a writing, and the next number. Answers to reports are not kept by anybody.
+    /// By receiver, up to where answers have been written down, and whether the last one that came is
+    /// `included` in a writing; instructions first.
     pub(super) fn settled(&self, included: impl Fn(u64) -> bool) -> Vec<(u64, bool, u64)> {
         let instructions = self.instructions_out.values();
+        let reports = self.reports_out.values();
+        let of = |settled, answered_in, next| (settled, included(answered_in), next);
         instructions
-            .map(|s| (s.settled, included(s.answered_in), s.outbox.next_seq()))
+            .map(|s| of(s.settled, s.answered_in, s.outbox.next_seq()))
+            .chain(reports.map(|s| of(s.settled, s.answered_in, s.outbox.next_seq())))
             .collect()
     }
 
