@@ -2,7 +2,7 @@
 
 mod experiment;
 
-pub(crate) use experiment::{ExperimentCommand, ReportOptions};
+pub(crate) use experiment::{ExperimentCommand, FleetArgs, LatencyArgs, ReportOptions};
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -76,7 +76,7 @@ pub(crate) enum Command {
     /// Look after planning domains.
     #[command(subcommand)]
     Domain(DomainCommand),
-    /// Measure: replanning, its growth with the map, and more. No robot is needed.
+    /// Measure: replanning, how fast a robot stops, and more. No robot needs to run.
     #[command(subcommand)]
     Experiment(ExperimentCommand),
     /// One role of a robot, as `up` starts it.
@@ -503,6 +503,8 @@ pub(crate) enum RoleCommand {
     Executor(executor_sim::program::ControllerArgs),
     /// The world.
     World(executor_sim::program::WorldArgs),
+    /// The machines of one kind of many robots.
+    Host(crate::experiment::fleet::HostArgs),
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {

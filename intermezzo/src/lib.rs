@@ -4,6 +4,7 @@
 mod cli;
 mod command;
 mod exit;
+mod experiment;
 mod place;
 mod robot;
 mod scenario;
@@ -19,7 +20,7 @@ pub use exit::{Exit, Failure};
 use agent_core::protocol::Command as Wish;
 use cli::{Command, DomainCommand, MapCommand, RoleCommand};
 use command::{
-    check, control, demo, experiment, goal, plan, scale, secure, status, svg, up, watch,
+    check, control, demo, experiment as measure, goal, plan, scale, secure, status, svg, up, watch,
 };
 
 /// Carries out what was typed, if that needs neither a robot nor anything else that waits. `None`
@@ -33,7 +34,7 @@ pub fn run_alone(cli: &Cli) -> Option<Result<Exit, Failure>> {
         Command::Map(MapCommand::Scale(args)) => Some(scale::run(args)),
         Command::Map(MapCommand::Svg(args)) => Some(svg::run(args)),
         Command::Domain(DomainCommand::Check { dir }) => Some(check::domain(dir)),
-        Command::Experiment(what) => experiment::run_alone(what),
+        Command::Experiment(what) => measure::run_alone(what),
         _ => None,
     }
 }
@@ -57,14 +58,14 @@ pub async fn run(cli: Cli) -> Result<Exit, Failure> {
         Command::Door(args) => control::door(args).await,
         Command::Status(args) => status::run(args).await,
         Command::Watch(args) => watch::run(args).await,
+        Command::Experiment(what) => measure::run(what).await,
         Command::Role(role) => run_role(role).await,
         // All of these went alone.
         Command::Plan(_)
         | Command::Certs(_)
         | Command::Passwords(_)
         | Command::Map(_)
-        | Command::Domain(_)
-        | Command::Experiment(_) => Ok(Exit::Done),
+        | Command::Domain(_) => Ok(Exit::Done),
     }
 }
 
@@ -82,6 +83,7 @@ async fn run_role(role: RoleCommand) -> Result<Exit, Failure> {
         RoleCommand::World(args) => executor_sim::program::run_world(args)
             .await
             .map_err(Failure::failed)?,
+        RoleCommand::Host(args) => experiment::fleet::host(args).await?,
     }
     Ok(Exit::Done)
 }

@@ -1,6 +1,7 @@
 //! What can be measured.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, Subcommand};
 
@@ -8,12 +9,18 @@ use clap::{Args, Subcommand};
 pub(crate) enum ExperimentCommand {
     /// The paper's Tables 1 to 3: how long it takes to go on with what was interrupted, online and naive.
     Replanning(ReplanningArgs),
+    /// How long it takes from the word "emergency" until the wheels are braked, with all processes of a robot.
+    Latency(LatencyArgs),
+    /// Many robots at once: how often they can be interrupted, how fast they stop, what each of them costs.
+    Fleet(FleetArgs),
 }
 
 impl ExperimentCommand {
     pub(crate) fn report_options(&self) -> &ReportOptions {
         match self {
             Self::Replanning(args) => &args.report,
+            Self::Latency(args) => &args.report,
+            Self::Fleet(args) => &args.report,
         }
     }
 }
@@ -45,6 +52,77 @@ pub(crate) struct ReplanningArgs {
     /// How often each drive is measured, by each planner.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) repetitions: u32,
+    #[command(flatten)]
+    pub(crate) report: ReportOptions,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+A robot of four processes and a router, as `up` starts it, drives through the museum, with its journals. Another client
+puts an emergency while it drives, again and again. What is measured, by one clock, is the time
+  put_to_braking         until the controller tells its motors to brake
+  put_to_motors          until the body brakes
+  put_to_seen            until the client has seen that
+  braking_to_still       from there to standstill: the robot's physics, in time of the world
+  still_to_first_action  until the first action of the emergency's plan begins
+  end_to_resumed         from the emergency's end until the interrupted goal goes on
+and, between the interruptions, a bare round trip from client to router to client. Then the same again in a made-up museum,
+with emergencies for which a large plan has to be made.
+
+Examples:
+  intermezzo experiment latency
+  intermezzo experiment latency --interruptions 100 --nodes 4000 --out results
+
+Exit status: 0 measured; 1 a robot did not do as it should; 2 the folder cannot be written; 130 ended by Ctrl-C, and what
+there was until then is reported.")]
+pub(crate) struct LatencyArgs {
+    /// How often the robot is interrupted under each condition.
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) interruptions: u32,
+    /// How many nodes the museum has in which large plans are made.
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..=i64::from(maps::MOST_NODES)))]
+    pub(crate) nodes: u32,
+    /// How many seconds of the world pass in one.
+    #[arg(long, value_name = "X", default_value_t = 20.0, value_parser = super::speed)]
+    pub(crate) speed: f64,
+    /// The same seed makes the same tours, emergencies and moments.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Where the journals are kept. Without it, in a temporary directory.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) state: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) report: ReportOptions,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Each fleet tours the museum, and each of its robots is interrupted at random. The parents of all are in one process, the
+children in another, controllers and worlds in a third; the router and whoever interrupts are in this one. There are no
+journals.
+
+Examples:
+  intermezzo experiment fleet
+  intermezzo experiment fleet --robots 1,20 --seconds 10 --out results
+
+Exit status: 0 measured; 1 a fleet did not come up or a robot did not do as it should; 2 the folder cannot be written; 130
+ended by Ctrl-C, and what there was until then is reported.")]
+pub(crate) struct FleetArgs {
+    /// How many robots, one fleet after the other.
+    #[arg(long, value_name = "N,…", value_delimiter = ',', default_values_t = [1, 10, 100, 1000], value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(crate) robots: Vec<u32>,
+    /// How long each fleet is interrupted.
+    #[arg(long, value_name = "S", default_value = "30", value_parser = super::seconds)]
+    pub(crate) seconds: Duration,
+    /// How many seconds there are between two interruptions of a robot, on average.
+    #[arg(long, value_name = "S", default_value = "10", value_parser = super::seconds)]
+    pub(crate) every: Duration,
+    /// How many seconds of the world pass in one.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = super::speed)]
+    pub(crate) speed: f64,
+    /// The same seed makes the same tours and moments.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) report: ReportOptions,
 }

@@ -73,6 +73,13 @@ impl User {
         }
     }
 
+    /// Starts a command.
+    pub fn start(&self, args: &[&str]) -> Child {
+        let mut command = self.command(args);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.spawn().unwrap()
+    }
+
     /// Runs a command that is to succeed.
     pub async fn ok(&self, args: &[&str]) -> Said {
         let said = self.run(args).await;

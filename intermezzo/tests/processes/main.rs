@@ -7,6 +7,7 @@ mod demo;
 mod ending;
 mod goals;
 mod locked;
+mod measuring;
 mod refusals;
 mod restart;
 mod side_by_side;

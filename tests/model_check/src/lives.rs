@@ -32,8 +32,6 @@ pub enum Cue {
     Again,
     /// It dies and starts again.
     Dies(Left),
-    /// Nobody dies any more.
-    Spared,
 }
 
 /// What becomes of it.

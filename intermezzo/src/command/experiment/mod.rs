@@ -8,6 +8,8 @@ use experiments::{ExperimentError, Report};
 
 use crate::cli::{ExperimentCommand, ReportOptions};
 use crate::exit::{Exit, Failure};
+use crate::experiment::fleet::Fleet;
+use crate::experiment::latency::Latency;
 use crate::style::{ADVICE, BAD};
 pub(crate) use progress::Progress;
 
@@ -22,6 +24,28 @@ pub(crate) fn run_alone(what: &ExperimentCommand) -> Option<Result<Exit, Failure
         ExperimentCommand::Replanning(args) => Some(measure(&|progress| {
             experiments::replanning(args.repetitions, progress)
         })),
+        ExperimentCommand::Latency(_) | ExperimentCommand::Fleet(_) => None,
+    }
+}
+
+/// Measures with robots that run, each of several processes.
+pub(crate) async fn run(what: ExperimentCommand) -> Result<Exit, Failure> {
+    if let Some(result) = run_alone(&what) {
+        return result;
+    }
+    let mut progress = begin(what.report_options())?;
+    let stopped = progress.stopped();
+    let report = match &what {
+        ExperimentCommand::Latency(args) => Latency::of(args).run(&mut progress, stopped).await,
+        ExperimentCommand::Fleet(args) => Fleet::of(args).run(&mut progress, stopped).await,
+        ExperimentCommand::Replanning(_) => Err(Failure::failed("it needs no robot")),
+    };
+    match report {
+        Ok(report) => end(what.report_options(), progress, Ok::<_, String>(report)),
+        Err(failure) => {
+            progress.end();
+            Err(failure)
+        }
     }
 }
 

@@ -13,6 +13,9 @@ use crate::exit::Failure;
 /// Where lines stay, as in a log, there is one for every so much time.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
 
+/// Ctrl-C is looked for so often.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
+
 /// A bar that moves on a terminal, lines now and then elsewhere. The first Ctrl-C ends the experiment
 /// with what there is so far, the second ends the process.
 pub(crate) struct Progress {
@@ -38,6 +41,16 @@ impl Progress {
             last_line: now,
             stop,
         })
+    }
+
+    /// Returns once Ctrl-C was pressed.
+    pub(super) fn stopped(&self) -> impl Future<Output = ()> + use<> {
+        let stop = self.stop.clone();
+        async move {
+            while !stop.load(Ordering::Relaxed) {
+                tokio::time::sleep(BETWEEN_LOOKS).await;
+            }
+        }
     }
 
     /// Takes the bar away. Returns whether Ctrl-C was pressed.
