@@ -435,8 +435,52 @@ pub(crate) enum MapCommand {
     },
     /// Make up a museum of any size, to see how things go on a map as large as yours.
     Scale(ScaleArgs),
+    /// Make a map of a navigation graph of Open-RMF.
+    FromRmf(FromRmfArgs),
     /// Draw a map: areas, nodes, passages and doors, and the shortest way between two nodes.
     Svg(SvgArgs),
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  intermezzo map from-rmf maps/examples/office.rmf.yaml -o office/      a whole place, then:
+  intermezzo up office --start charger1
+  intermezzo map from-rmf 0.yaml --level L2 --areas-by names -o l2.geojson
+
+A navigation graph has no areas; ours are made so: what can be reached without passing a door is an area,
+and what is too large then, or has a door inside, is cut in two. Where areas meet without a door, a gate is
+made up that is open. What is left out or made up is told on the standard error. See maps/README.md.
+
+Exit status: 0 made; 1 the graph has faults, each is named with its line; 2 no such file, or OUT cannot be
+written.")]
+pub(crate) struct FromRmfArgs {
+    /// A navigation graph in YAML, as building_map_generator of rmf_building_map_tools makes it.
+    pub(crate) file: PathBuf,
+    /// The file to write the map to, or a folder (it exists, or its name ends in `/`) to write a whole
+    /// place to, with the museum's domains. Without it the map is printed.
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+    /// The level that is wanted, if there are several.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) level: Option<String>,
+    /// What makes an area: only doors, or also what vertices are called (a property `area`, or else what
+    /// names have in common: office_101 and office_102).
+    #[arg(long, value_enum, default_value_t = AreasBy::Doors)]
+    pub(crate) areas_by: AreasBy,
+    /// An area of more nodes is cut.
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(2..))]
+    pub(crate) area_nodes: u32,
+    /// Print one JSON object with what was made, left out and made up.
+    #[arg(long, requires = "output")]
+    pub(crate) json: bool,
+}
+
+/// What makes an area.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, clap::ValueEnum)]
+pub(crate) enum AreasBy {
+    Doors,
+    Names,
 }
 
 #[derive(Args, Clone, Debug)]

@@ -20,7 +20,8 @@ pub use exit::{Exit, Failure};
 use agent_core::protocol::Command as Wish;
 use cli::{Command, DomainCommand, MapCommand, RoleCommand};
 use command::{
-    check, control, demo, experiment as measure, goal, plan, scale, secure, status, svg, up, watch,
+    check, control, demo, experiment as measure, from_rmf, goal, plan, scale, secure, status, svg,
+    up, watch,
 };
 
 /// Carries out what was typed, if that needs neither a robot nor anything else that waits. `None`
@@ -32,6 +33,7 @@ pub fn run_alone(cli: &Cli) -> Option<Result<Exit, Failure>> {
         Command::Passwords(args) => Some(secure::passwords(args)),
         Command::Map(MapCommand::Check { file }) => Some(check::map(file)),
         Command::Map(MapCommand::Scale(args)) => Some(scale::run(args)),
+        Command::Map(MapCommand::FromRmf(args)) => Some(from_rmf::run(args)),
         Command::Map(MapCommand::Svg(args)) => Some(svg::run(args)),
         Command::Domain(DomainCommand::Check { dir }) => Some(check::domain(dir)),
         Command::Experiment(what) => measure::run_alone(what),

@@ -5,6 +5,7 @@ pub(crate) mod control;
 pub(crate) mod demo;
 pub(crate) mod experiment;
 pub(crate) mod files;
+pub(crate) mod from_rmf;
 pub(crate) mod goal;
 pub(crate) mod plan;
 pub(crate) mod scale;
