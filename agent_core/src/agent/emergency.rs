@@ -1,8 +1,11 @@
 //! Algorithm 3: emergency goal handling. What interrupts, and what is set aside for it.
 
 use super::{Agent, Execution, Intention, Phase, ResumedBy, Running, WaitsFor};
-use crate::planner::{Item, Planner};
+use crate::planner::{Item, Planner, may_begin_with};
 use crate::protocol::{GoalId, Happening, Instruction};
+
+/// A plan takes at least about so many expansions for each of its actions, alternatives included.
+const EXPANSIONS_AN_ACTION: u64 = 8;
 
 /// Why the running goal is not to go on at present.
 enum Yield {
@@ -152,8 +155,16 @@ impl<P: Planner> Agent<P> {
             return false;
         }
         let (problem, agendas) = (self.problem_of(Some(intention)), intention.agendas.clone());
-        self.planner.begin(problem, &agendas);
         let budget = self.configuration.policy.expansions_before_stopping;
+        let most = budget / EXPANSIONS_AN_ACTION;
+        // The robot drives on while this is found out, so not even the planner is asked in vain.
+        let may = agendas
+            .iter()
+            .any(|agenda| may_begin_with(&problem, &agenda.tasks, &running_action, most));
+        if !may {
+            return false;
+        }
+        self.planner.begin(problem, &agendas);
         let outcome = self.planner.think(budget);
         self.planner.stop();
         let Some(outcome) = outcome else {

@@ -12,6 +12,7 @@ mod matching;
 #[cfg(test)]
 mod meaning;
 mod naive;
+mod nearer;
 mod network;
 mod plan;
 mod problem;
@@ -28,6 +29,7 @@ pub use detour::is_detour;
 pub use graph::GraphPlanner;
 pub use hangs_on::{Reliance, hangs_on};
 pub use naive::NaivePlanner;
+pub use nearer::may_begin_with;
 pub use network::{Frame, Item, TaskList};
 pub use plan::{Agenda, Origin, Plan, Step};
 pub use problem::Problem;
