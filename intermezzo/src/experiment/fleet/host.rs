@@ -1,4 +1,4 @@
-//! Many robots' machines of one kind in one process, over one session.
+//! Many robots' machines of one kind in one process, over few sessions.
 //!
 //! Each is driven as in a process of its own, by the same loop; none keeps a journal, and no world
 //! publishes pictures.
@@ -21,6 +21,10 @@ use crate::exit::Failure;
 
 /// A world is there within this, however many are started.
 const PATIENCE: std::time::Duration = std::time::Duration::from_secs(120);
+
+/// So many robots share a session: for every message zenoh looks through all that is declared in the
+/// session that it comes to.
+const ROBOTS_A_SESSION: usize = 25;
 
 /// What a process hosts.
 #[derive(Args, Clone, Debug)]
@@ -84,27 +88,35 @@ fn start(place: &Place, number: u32) -> String {
 /// # Errors
 /// If they cannot be made, or one of them cannot go on.
 pub(crate) async fn run(args: HostArgs) -> Result<(), Failure> {
-    let session = args.link.open().await.map_err(Failure::failed)?;
+    let mut sessions = Vec::new();
     let hosted = tokio::select! {
-        hosted = host(&args, &session) => hosted,
+        hosted = host(&args, &mut sessions) => hosted,
         () = args.link.shutdown() => Ok(()),
     };
-    session::close(session).await;
+    let closing: JoinSet<()> = sessions.into_iter().map(session::close).collect();
+    closing.join_all().await;
     hosted
 }
 
-async fn host(args: &HostArgs, session: &Session) -> Result<(), Failure> {
+async fn host(args: &HostArgs, sessions: &mut Vec<Session>) -> Result<(), Failure> {
     let place = Arc::new(Place::museum());
+    for _ in 0..(args.robots as usize).div_ceil(ROBOTS_A_SESSION) {
+        sessions.push(args.link.open().await.map_err(Failure::failed)?);
+    }
+    let first = sessions
+        .first()
+        .ok_or_else(|| Failure::bad_input("a fleet has a robot at least"))?;
     let clock = match args.part {
         Part::Bodies => Clock::start(args.speed),
         // All worlds have one clock.
-        _ => Clock::of_world(session, &keys(0)?, PATIENCE).await,
+        _ => Clock::of_world(first, &keys(0)?, PATIENCE).await,
     };
     let clock = clock.map_err(Failure::failed)?;
     let epoch = epoch_now();
     let mut driven = JoinSet::new();
     let mut services = Vec::new();
     for number in 0..args.robots {
+        let session = &sessions[number as usize / ROBOTS_A_SESSION];
         let (keys, session) = (keys(number)?, session.clone());
         match args.part {
             Part::Parents => {
