@@ -1,4 +1,9 @@
 //! What the experiment on replanning says, as far as it does not depend on the machine.
+#![allow(
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "a test that cannot go on has failed"
+)]
 
 use std::collections::BTreeMap;
 
@@ -93,4 +98,48 @@ fn online_never_expands_more_than_naive_to_resume() {
         assert!(online <= naive, "{:?}", pair[0]);
         assert!(naive > 0, "{:?}", pair[1]);
     }
+}
+
+#[test]
+fn online_drives_as_far_as_naive_and_farther_where_a_door_on_the_way_has_closed() {
+    let report = report();
+    let routes = rows(table(&report, "routes"));
+    let length_m = |planner: &str, emergency: &str, is_closed: bool| {
+        let mut routes = routes.iter().filter(|row| {
+            text(row["planner"]) == planner
+                && text(row["emergency"]) == emergency
+                && (*row["closes"] != Cell::Empty) == is_closed
+        });
+        match routes.next().unwrap()["route_m"] {
+            Cell::Measure(length_m) => *length_m,
+            other => panic!("{other:?} is no length"),
+        }
+    };
+    for emergency in ["n38", "n28", "n29", "n13", "n4", "n12"] {
+        for is_closed in [false, true] {
+            let [online, naive] =
+                ["online", "naive"].map(|planner| length_m(planner, emergency, is_closed));
+            assert!(
+                (online - naive).abs() < 1e-9,
+                "{emergency}: {online} m, {naive} m"
+            );
+        }
+        let [open, closed] =
+            [false, true].map(|is_closed| length_m("online", emergency, is_closed));
+        assert!(closed > open, "{emergency}: {closed} m, {open} m");
+    }
+    // As in the map: n28, n26, n16, n14, n7, n5, n1.
+    assert!((length_m("online", "n28", false) - 30.642).abs() < 1e-9);
+}
+
+#[test]
+fn a_door_that_closes_has_its_figures_in_a_table_of_its_own() {
+    let report = report();
+    let figures = rows(table(&report, "doors"));
+    assert_eq!(figures.len(), 6 * 3 * 2);
+    assert!(
+        figures
+            .iter()
+            .all(|row| text(row["closes"]).starts_with("door"))
+    );
 }

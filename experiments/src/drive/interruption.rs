@@ -49,6 +49,8 @@ pub(crate) struct Sample {
     pub child: Spent,
     /// How the parent has taken up the tour.
     pub how: Resumption,
+    /// Metres from where the emergency ended to the goal, if that was driven.
+    pub route_m: Option<f64>,
 }
 
 /// Drives into the situation and on until the tour goes on; `to_the_end`, until it is done.
@@ -98,6 +100,7 @@ pub(crate) fn interrupt(
         parent: watch.parent,
         child: watch.child,
         how,
+        route_m: to_the_end.then(|| ground.length_m(&watch.driven)),
     })
 }
 
@@ -158,6 +161,8 @@ struct Watch {
     parent: Spent,
     child: Spent,
     how: Option<Resumption>,
+    /// What the child has begun since the emergency ended.
+    driven: Vec<Action>,
     reached: bool,
     failed: bool,
 }
@@ -178,7 +183,10 @@ impl Watch {
         for event in events(call) {
             let goal = event.goal.as_ref().map_or("", |goal| goal.as_str());
             match (&event.what, goal) {
-                (Happening::GoalSucceeded, EMERGENCY) => emergency_is_over = true,
+                (Happening::GoalSucceeded, EMERGENCY) => {
+                    emergency_is_over = true;
+                    self.driven.clear();
+                }
                 (Happening::GoalSucceeded, TOUR) => self.reached = true,
                 (Happening::GoalResumed { how, .. }, TOUR) => self.how = Some(*how),
                 (Happening::GoalFailed { .. } | Happening::GoalBlocked { .. }, _) => {
@@ -207,13 +215,13 @@ impl Watch {
     }
 
     fn child_call(&mut self, call: &Call<'_>) {
-        if self.phase == Phase::Before {
-            self.first = self.first.take().or_else(|| {
-                events(call).find_map(|event| match &event.what {
-                    Happening::ActionStarted { action, .. } => Some(action.clone()),
-                    _ => None,
-                })
-            });
+        let begun = events(call).filter_map(|event| match &event.what {
+            Happening::ActionStarted { action, .. } => Some(action.clone()),
+            _ => None,
+        });
+        self.driven.extend(begun);
+        if self.phase == Phase::Before && self.first.is_none() {
+            self.first = self.driven.first().cloned();
         }
         if self.phase == Phase::OnTheWay
             && let Input::Instruction { instruction, .. } = call.input

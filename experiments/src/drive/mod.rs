@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use agent_core::agent::Agent;
 use agent_core::language::parse_tasks;
-use agent_core::model::{FactChange, Symbol, Time};
+use agent_core::model::{Action, FactChange, Symbol, Time};
 use agent_core::planner::{AnyPlanner, PlannerKind, Settings};
 use agent_core::protocol::{
     ActionId, Answer, GoalRequest, Input, Instruction, Machine, Output, Reply, Report, Urgency,
@@ -73,6 +73,13 @@ impl Ground {
         let length_m = self.site.passage(passage)?.length_m();
         let seconds = length_m / MoverSpec::default().max_speed_m_s;
         Some(Time::from_secs(seconds / 2.0))
+    }
+
+    /// How long the passages are that actions lead along.
+    pub fn length_m(&self, actions: &[Action]) -> f64 {
+        let passages = actions.iter().flat_map(|action| &action.args);
+        let passages = passages.filter_map(|arg| self.site.passage(arg.as_str()));
+        passages.map(maps::Passage::length_m).sum()
     }
 }
 

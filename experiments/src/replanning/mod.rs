@@ -1,5 +1,6 @@
 //! The paper's Tables 1, 2 and 3: how long it takes to go on with what was interrupted.
 
+mod beside;
 mod paper;
 
 use agent_core::planner::PlannerKind;
@@ -44,7 +45,10 @@ pub fn replanning(
     let ground = Ground::museum()?;
     let mut rows = Vec::new();
     for paper in PAPER_ROWS {
-        rows.push(Row::new(&ground, paper)?);
+        rows.push(Row::new(&ground, paper, None)?);
+    }
+    for (paper, door) in PAPER_ROWS.into_iter().zip(beside::CLOSES) {
+        rows.push(Row::new(&ground, paper, Some(door))?);
     }
     let of = u64::from(WARM_UP + repetitions);
     for repetition in 0..WARM_UP + repetitions {
@@ -66,14 +70,22 @@ pub fn replanning(
 
 struct Row {
     paper: PaperRow,
+    /// A door that closes meanwhile; then the row is not the paper's.
+    closes: Option<&'static str>,
     situation: Situation,
     /// By planner: stacks that stand at the start.
     drives: [Drive; 2],
     samples: [Vec<Sample>; 2],
+    /// By planner: metres from where the emergency ended to the goal.
+    route_m: [Option<f64>; 2],
 }
 
 impl Row {
-    fn new(ground: &Ground, paper: PaperRow) -> Result<Self, ExperimentError> {
+    fn new(
+        ground: &Ground,
+        paper: PaperRow,
+        closes: Option<&'static str>,
+    ) -> Result<Self, ExperimentError> {
         let [online, naive] = PLANNERS.map(|(_, kind)| Drive::new(ground, paper.start.0, kind));
         Ok(Self {
             situation: Situation {
@@ -81,12 +93,26 @@ impl Row {
                 goal: paper.goal.0.to_owned(),
                 interruption: paper.interruption.0.to_owned(),
                 emergency: paper.emergency.0.to_owned(),
-                change: None,
+                change: closes.map(beside::closing),
             },
             paper,
+            closes,
             drives: [online?, naive?],
             samples: [Vec::new(), Vec::new()],
+            route_m: [None, None],
         })
+    }
+
+    /// The columns `start` to `emergency`.
+    fn words(&self) -> [Cell; 4] {
+        let Situation {
+            start,
+            goal,
+            interruption,
+            emergency,
+            ..
+        } = &self.situation;
+        [start, goal, interruption, emergency].map(|word| Cell::from(word.as_str()))
     }
 
     fn measure(&mut self, ground: &Ground, repetition: u32) -> Result<(), ExperimentError> {
@@ -97,11 +123,13 @@ impl Row {
             let drive = self.drives[planner].clone();
             let sample = interrupt(ground, drive, &self.situation, is_warm_up)?;
             let is_revised = sample.how != Resumption::Continued;
-            if is_revised != self.paper.is_revised {
+            if self.closes.is_none() && is_revised != self.paper.is_revised {
                 let why = format!("the parent's plan is {:?}, unlike the paper's", sample.how);
                 return Err(ExperimentError::course(&self.situation, why));
             }
-            if !is_warm_up {
+            if is_warm_up {
+                self.route_m[planner] = sample.route_m;
+            } else {
                 self.samples[planner].push(sample);
             }
         }
@@ -111,7 +139,13 @@ impl Row {
 
 fn report(rows: &[Row]) -> Report {
     let mut report = Report::new("replanning", METHOD);
-    report.tables = vec![ratios(rows), figures(rows)];
+    let (of_the_paper, with_a_door) = rows.split_at(PAPER_ROWS.len().min(rows.len()));
+    report.tables = vec![
+        ratios(of_the_paper),
+        figures(of_the_paper),
+        beside::doors(with_a_door),
+        beside::routes(rows),
+    ];
     report
 }
 
@@ -148,46 +182,44 @@ pub(crate) fn us(duration: std::time::Duration) -> f64 {
 }
 
 fn figures(rows: &[Row]) -> Table {
-    let mut table = Table::new(
-        "replanning",
-        "Time to resume the tour",
-        [
-            "row",
-            "start",
-            "goal",
-            "interruption",
-            "emergency",
-            "level",
-            "planner",
-            "median_us",
-            "p10_us",
-            "p90_us",
-            "upkeep_us",
-            "expanded",
-            "evaluated",
-        ],
-    );
+    let mut table = Table::new("replanning", "Time to resume the tour", COLUMNS);
+    for (_, cells) in lines(rows) {
+        table.push(cells);
+    }
+    table
+}
+
+const COLUMNS: [&str; 13] = [
+    "row",
+    "start",
+    "goal",
+    "interruption",
+    "emergency",
+    "level",
+    "planner",
+    "median_us",
+    "p10_us",
+    "p90_us",
+    "upkeep_us",
+    "expanded",
+    "evaluated",
+];
+
+/// What stands in [`COLUMNS`], for each row, level and planner.
+fn lines(rows: &[Row]) -> Vec<(&Row, Vec<Cell>)> {
+    let mut lines = Vec::new();
     for (number, row) in rows.iter().enumerate() {
         for (level, level_name) in LEVELS.into_iter().enumerate() {
             for (planner, (planner_name, _)) in PLANNERS.into_iter().enumerate() {
-                let Situation {
-                    start,
-                    goal,
-                    interruption,
-                    emergency,
-                    ..
-                } = &row.situation;
-                let words = [start, goal, interruption, emergency];
-                let words = words.map(|word| Cell::from(word.as_str()));
                 let mut cells_of_row = vec![Cell::from(number + 1)];
-                cells_of_row.extend(words);
+                cells_of_row.extend(row.words());
                 cells_of_row.extend([level_name.into(), planner_name.into()]);
                 cells_of_row.extend(cells(&row.samples[planner], level));
-                table.push(cells_of_row);
+                lines.push((row, cells_of_row));
             }
         }
     }
-    table
+    lines
 }
 
 fn ratios(rows: &[Row]) -> Table {
