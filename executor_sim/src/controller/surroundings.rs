@@ -17,6 +17,8 @@ pub(super) struct Surroundings {
     /// `None` until the sensors have said so for the first time.
     place: Option<Place>,
     doors: BTreeMap<Symbol, bool>,
+    /// A building has tens of thousands: they are not gone through for every row that is written.
+    doors_are_written: bool,
     /// Facts about the place that superiors hold to be true, because they have been told.
     told: BTreeSet<Fact>,
 }
@@ -25,6 +27,7 @@ impl Surroundings {
     pub(super) fn new(floor: Floor) -> Self {
         Self {
             doors: floor.doors().clone(),
+            doors_are_written: false,
             floor,
             place: None,
             told: BTreeSet::new(),
@@ -54,11 +57,15 @@ impl Surroundings {
 
     /// Whether that is news.
     pub(super) fn set_door(&mut self, door: &Symbol, open: bool) -> bool {
-        self.doors.insert(door.clone(), open) != Some(open)
+        let changed = self.doors.insert(door.clone(), open) != Some(open);
+        self.doors_are_written &= !changed;
+        changed
     }
 
-    pub(super) fn write_down(&self, ledger: &mut Ledger) {
-        ledger.put(DOORS.to_owned(), &self.doors);
+    pub(super) fn write_down(&mut self, ledger: &mut Ledger) {
+        if !std::mem::replace(&mut self.doors_are_written, true) {
+            ledger.put(DOORS.to_owned(), &self.doors);
+        }
         ledger.put(TOLD.to_owned(), &self.told);
     }
 
@@ -69,6 +76,7 @@ impl Surroundings {
             return Err(Unreadable::new(DOORS, format!("there is no door `{door}`")));
         }
         self.doors.extend(doors);
+        self.doors_are_written = false;
         self.told = read_row(rows, TOLD)?.unwrap_or_default();
         Ok(())
     }

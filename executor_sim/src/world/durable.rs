@@ -38,7 +38,9 @@ impl Durable for World {
         };
         let ledger = &mut self.ledger;
         ledger.put(BODY.to_owned(), &snapshot);
-        ledger.put(DOORS.to_owned(), &self.doors);
+        if !std::mem::replace(&mut self.doors_are_written, true) {
+            ledger.put(DOORS.to_owned(), &self.doors);
+        }
         ledger.put(HEAD.to_owned(), &self.chronicle.head);
         let mut keys = BTreeSet::new();
         for done in &self.chronicle.kept {
@@ -78,6 +80,7 @@ impl Durable for World {
         self.now = snapshot.at;
         self.body = Body::new(snapshot.place, snapshot.heading_rad, snapshot.odometer_m);
         self.doors = doors;
+        self.doors_are_written = false;
         self.ledger = Ledger::of(rows, "m/");
         self.outputs.clear();
         self.tell_pose(self.now);

@@ -32,6 +32,8 @@ pub struct World {
     floor: Floor,
     spec: MoverSpec,
     doors: BTreeMap<Symbol, bool>,
+    /// A building has tens of thousands: they are not gone through for every row that is written.
+    doors_are_written: bool,
     body: Body,
     speech: Option<Span>,
     door_work: Option<DoorWork>,
@@ -88,6 +90,7 @@ impl World {
         }
         let mut world = Self {
             doors: floor.doors().clone(),
+            doors_are_written: false,
             floor,
             spec,
             body: Body::new(start, 0.0, 0.0),
@@ -260,6 +263,7 @@ impl World {
             Some(state) if *state != open => *state = open,
             _ => return false,
         }
+        self.doors_are_written = false;
         if !open && self.body.door_shut(&self.floor, &self.spec, now, door) {
             self.tell_pose(now);
         }
