@@ -89,7 +89,7 @@ impl Fleet {
         interrupted: impl Future<Output = ()>,
     ) -> Result<Report, Failure> {
         let mut interrupted = std::pin::pin!(interrupted);
-        let mut all = Vec::new();
+        let (mut all, mut too_many) = (Vec::new(), Vec::new());
         for (place, robots) in self.robots.iter().enumerate() {
             let (done, of) = (place as u64, self.robots.len() as u64);
             let mut tell = |what: &str| onlooker.see(done, of, &format!("{robots} robots: {what}"));
@@ -103,11 +103,18 @@ impl Fleet {
             end(hosts).await;
             session::close(router).await;
             match measured {
-                Some(measured) => all.push(measured?),
+                Some(Ok(measured)) => all.push(measured),
+                // What was measured of smaller fleets counts all the same.
+                Some(Err(failure)) if !all.is_empty() => {
+                    too_many.push(format!("{robots} robots: {}.", failure.what));
+                }
+                Some(Err(failure)) => return Err(failure),
                 None => break,
             }
         }
-        Ok(self.report(&all))
+        let mut report = self.report(&all);
+        report.remarks.append(&mut too_many);
+        Ok(report)
     }
 
     async fn measure(
