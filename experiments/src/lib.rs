@@ -11,6 +11,7 @@ mod machine;
 mod onlooker;
 mod replanning;
 mod report;
+mod scaling;
 mod summary;
 mod table;
 
@@ -20,5 +21,6 @@ pub use machine::machine;
 pub use onlooker::Onlooker;
 pub use replanning::{PAPER_MACHINE, PAPER_ROWS, PaperRow, replanning};
 pub use report::{Report, WriteError};
+pub use scaling::{MeasureMemory, SIZES, Scaling, memory_after_an_interruption, scaling};
 pub use summary::Summary;
 pub use table::{Cell, Table};

@@ -2,7 +2,9 @@
 
 mod experiment;
 
-pub(crate) use experiment::{ExperimentCommand, FleetArgs, LatencyArgs, ReportOptions};
+pub(crate) use experiment::{
+    ExperimentCommand, FleetArgs, LatencyArgs, ReportOptions, ScalingArgs,
+};
 
 use std::path::PathBuf;
 use std::time::Duration;

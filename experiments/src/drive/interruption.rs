@@ -20,7 +20,7 @@ pub(crate) struct Situation {
     pub start: String,
     /// Where it is to go.
     pub goal: String,
-    /// The passage that it goes along first, and is interrupted on.
+    /// The passage that it goes along first, and is interrupted on; empty if it may be any.
     pub interruption: String,
     /// Where it has to go meanwhile.
     pub emergency: String,
@@ -43,7 +43,7 @@ pub(crate) struct Spent {
 }
 
 /// What one interruption has shown.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Sample {
     pub parent: Spent,
     pub child: Spent,
@@ -51,6 +51,10 @@ pub(crate) struct Sample {
     pub how: Resumption,
     /// Metres from where the emergency ended to the goal, if that was driven.
     pub route_m: Option<f64>,
+    /// The passage that it was interrupted on.
+    pub interruption: String,
+    /// Whether something else was given the processor during the time to resume.
+    pub is_disturbed: bool,
 }
 
 /// Drives into the situation and on until the tour goes on; `to_the_end`, until it is done.
@@ -72,11 +76,17 @@ pub(crate) fn interrupt(
         }
         situation.go_on(&mut drive, &mut watch, "the tour does not begin")?;
     };
-    if !first.args.iter().any(|arg| *arg == *situation.interruption) {
-        let why = format!("the tour begins with {first}");
-        return Err(ExperimentError::course(situation, why));
-    }
-    let well_on = drive.now + ground.half_way(&situation.interruption).unwrap_or_default();
+    let mut args = first.args.iter();
+    let passage = args.find(|arg| ground.half_way(arg.as_str()).is_some());
+    let passage = passage
+        .filter(|passage| {
+            let wanted = situation.interruption.as_str();
+            wanted.is_empty() || **passage == wanted
+        })
+        .ok_or_else(|| {
+            ExperimentError::course(situation, format_args!("the tour begins with {first}"))
+        })?;
+    let well_on = drive.now + ground.half_way(passage.as_str()).unwrap_or_default();
     drive.run_until(well_on, &mut watch);
     watch.phase = Phase::Emergency;
     let task = format!("(go {})", situation.emergency);
@@ -101,6 +111,8 @@ pub(crate) fn interrupt(
         child: watch.child,
         how,
         route_m: to_the_end.then(|| ground.length_m(&watch.driven)),
+        interruption: passage.to_string(),
+        is_disturbed: watch.is_disturbed,
     })
 }
 
@@ -165,6 +177,7 @@ struct Watch {
     driven: Vec<Action>,
     reached: bool,
     failed: bool,
+    is_disturbed: bool,
 }
 
 impl Observer for Watch {
@@ -202,6 +215,7 @@ impl Watch {
             Phase::Before => {}
             Phase::Emergency => self.parent.keep_up(call),
             Phase::ParentResumes => {
+                self.is_disturbed |= call.is_disturbed;
                 if let Some(at) = self.parent.resume(call, begins) {
                     self.instruction = begun(&call.outputs[at].1).cloned();
                     self.phase = Phase::OnTheWay;
@@ -233,6 +247,7 @@ impl Watch {
             Phase::Before => {}
             Phase::Emergency | Phase::ParentResumes | Phase::OnTheWay => self.child.keep_up(call),
             Phase::ChildResumes => {
+                self.is_disturbed |= call.is_disturbed;
                 // There may be nothing to do for it.
                 let ends = |output: &Output<_>| {
                     let done = matches!(

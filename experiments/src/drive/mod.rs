@@ -18,6 +18,7 @@ use agent_core::protocol::{
 };
 use executor_sim::{Faults, Floor, MoverSpec, Place as Stand, SimulatedRobot};
 use maps::{Level, Site};
+use nix::sys::resource::{UsageWho, getrusage};
 
 use crate::ExperimentError;
 pub(crate) use interruption::{Sample, Situation, Spent, interrupt};
@@ -94,6 +95,8 @@ pub(crate) struct Call<'a> {
     pub spent: Duration,
     /// What its planner did of that.
     pub planning: Meter,
+    /// Whether something else was given the processor meanwhile, so that the clock says nothing.
+    pub is_disturbed: bool,
 }
 
 /// Sees every call of an agent.
@@ -304,6 +307,7 @@ fn call(
 ) -> (Option<Reply>, Vec<Output<Infallible>>) {
     let before = agent.planner().meter();
     let kept = input.clone();
+    let switches = switches();
     let mut outputs = Vec::with_capacity(16);
     let begun = Instant::now();
     let reply = agent.handle(now, input);
@@ -317,9 +321,17 @@ fn call(
         outputs: &outputs,
         spent,
         planning: agent.planner().meter().since(before),
+        is_disturbed: switches != self::switches(),
     });
     let outputs = outputs.into_iter().map(|(_, output)| output);
     (reply, outputs.collect())
+}
+
+/// How often something else was given the processor while this thread had something to do; nothing if
+/// the system does not say.
+fn switches() -> i64 {
+    let usage = getrusage(UsageWho::RUSAGE_THREAD);
+    usage.map_or(0, |usage| usage.involuntary_context_switches())
 }
 
 fn above(who: Who) -> Who {

@@ -9,6 +9,8 @@ use clap::{Args, Subcommand};
 pub(crate) enum ExperimentCommand {
     /// The paper's Tables 1 to 3: how long it takes to go on with what was interrupted, online and naive.
     Replanning(ReplanningArgs),
+    /// The same on made-up museums of up to 100,000 nodes, with doors that close, and the memory that it takes.
+    Scaling(ScalingArgs),
     /// How long it takes from the word "emergency" until the wheels are braked, with all processes of a robot.
     Latency(LatencyArgs),
     /// Many robots at once: how often they can be interrupted, how fast they stop, what each of them costs.
@@ -19,6 +21,7 @@ impl ExperimentCommand {
     pub(crate) fn report_options(&self) -> &ReportOptions {
         match self {
             Self::Replanning(args) => &args.report,
+            Self::Scaling(args) => &args.report,
             Self::Latency(args) => &args.report,
             Self::Fleet(args) => &args.report,
         }
@@ -52,6 +55,35 @@ pub(crate) struct ReplanningArgs {
     /// How often each drive is measured, by each planner.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) repetitions: u32,
+    #[command(flatten)]
+    pub(crate) report: ReportOptions,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+The paper's kinds of interruptions (in the same area, on the route, off it, there and back) and a door that closes on the
+suspended route or elsewhere, on made-up museums of growing size, online and naive in turns; and the memory of a process of its
+own for each size and planner.
+
+Examples:
+  intermezzo experiment scaling --quick
+  intermezzo experiment scaling --nodes 40,4000 --out results
+
+Exit status: 0 measured; 1 a museum cannot be made; 2 the folder cannot be written;
+130 ended by Ctrl-C, and what there was until then is reported.")]
+pub(crate) struct ScalingArgs {
+    /// How many nodes the museums have.
+    #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_values_t = experiments::SIZES, value_parser = clap::value_parser!(u32).range(40..=i64::from(maps::MOST_NODES)))]
+    pub(crate) nodes: Vec<u32>,
+    /// How often each interruption is measured, by each planner, unless that takes too long.
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(crate) repetitions: u32,
+    /// Only museums of 40 and 400 nodes, three times each.
+    #[arg(long, conflicts_with_all = ["nodes", "repetitions"])]
+    pub(crate) quick: bool,
+    /// Print the memory that this process takes for one interruption with this planner, and end.
+    #[arg(long, value_name = "PLANNER", hide = true)]
+    pub(crate) memory_of: Option<String>,
     #[command(flatten)]
     pub(crate) report: ReportOptions,
 }

@@ -1,6 +1,7 @@
 //! `experiment`: measures something, and reports it.
 
 mod progress;
+mod scaling;
 
 use std::io::{self, Write};
 
@@ -24,6 +25,10 @@ pub(crate) fn run_alone(what: &ExperimentCommand) -> Option<Result<Exit, Failure
         ExperimentCommand::Replanning(args) => Some(measure(&|progress| {
             experiments::replanning(args.repetitions, progress)
         })),
+        ExperimentCommand::Scaling(args) => Some(match &args.memory_of {
+            Some(planner) => scaling::memory(args, planner),
+            None => measure(&|progress| scaling::run(args, progress)),
+        }),
         ExperimentCommand::Latency(_) | ExperimentCommand::Fleet(_) => None,
     }
 }
@@ -38,7 +43,9 @@ pub(crate) async fn run(what: ExperimentCommand) -> Result<Exit, Failure> {
     let report = match &what {
         ExperimentCommand::Latency(args) => Latency::of(args).run(&mut progress, stopped).await,
         ExperimentCommand::Fleet(args) => Fleet::of(args).run(&mut progress, stopped).await,
-        ExperimentCommand::Replanning(_) => Err(Failure::failed("it needs no robot")),
+        ExperimentCommand::Replanning(_) | ExperimentCommand::Scaling(_) => {
+            Err(Failure::failed("it needs no robot"))
+        }
     };
     match report {
         Ok(report) => end(what.report_options(), progress, Ok::<_, String>(report)),
