@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use agent_core::agent::{Agent, Configuration};
-use agent_core::model::Symbol;
+use agent_core::agent::{Agent, Configuration, MapsBelow};
+use agent_core::model::{Map, Symbol};
 use agent_core::planner::{AnyPlanner, PlannerKind, Settings};
 use executor_sim::{Controller, Faults, Floor, MoverSpec, Place, World};
 use maps::{Level, Site};
@@ -16,8 +16,40 @@ pub struct Ground {
     floor: Floor,
     area: Level,
     node: Level,
-    parent: [Configuration; 2],
-    child: Configuration,
+    /// With one child and with two, by planner.
+    parent: [Starters; 2],
+    /// Whoever is in charge of everything else, and of one area.
+    child: [Starters; 2],
+}
+
+/// The maps of all areas.
+#[derive(Debug)]
+struct AreaMaps(BTreeMap<Symbol, Map>);
+
+impl MapsBelow for AreaMaps {
+    fn map_of(&self, place: &Symbol) -> Option<Map> {
+        self.0.get(place).cloned()
+    }
+}
+
+/// Agents that have just been made, one with each planner.
+struct Starters([Agent<AnyPlanner>; 2]);
+
+impl Starters {
+    fn new(configuration: &Configuration) -> Self {
+        Self([PlannerKind::Naive, PlannerKind::Graph].map(|kind| {
+            let planner = AnyPlanner::new(kind, Settings::default());
+            Agent::new(configuration.clone(), planner)
+        }))
+    }
+
+    fn start(&self, epoch: u64, kind: PlannerKind) -> Agent<AnyPlanner> {
+        let agent = match kind {
+            PlannerKind::Naive => &self.0[0],
+            PlannerKind::Graph => &self.0[1],
+        };
+        agent.clone().for_epoch(epoch)
+    }
 }
 
 /// Its doors.
@@ -49,16 +81,22 @@ impl Ground {
         let area = level(maps::museum::AREA_DOMAIN, maps::museum::AREA_MODEL, "area");
         let node = level(maps::museum::NODE_DOMAIN, maps::museum::NODE_MODEL, "node");
         let east = BTreeMap::from([(Symbol::from(EAST), Symbol::from("east"))]);
+        let maps_below = Arc::new(AreaMaps(maps::area_maps(&site)));
         let parent = |wings| {
-            parent_agent::configuration(&site, &area, NODES[0], "child", wings, 0)
+            let parent = parent_agent::configuration(&site, &area, NODES[0], "child", wings, 0);
+            Configuration {
+                maps_below: maps_below.clone(),
+                ..parent.expect("the robot starts from a node")
+            }
+        };
+        let child = |name| {
+            child_agent::configuration(&site, &node, NODES[0], "executor", name, 0)
                 .expect("the robot starts from a node")
         };
-        let child = child_agent::configuration(&site, &node, NODES[0], "executor", "child", 0)
-            .expect("the robot starts from a node");
         Self {
             floor: Floor::try_from(&*site).expect("the ring is a floor"),
-            parent: [parent(BTreeMap::new()), parent(east)],
-            child,
+            parent: [BTreeMap::new(), east].map(|wings| Starters::new(&parent(wings))),
+            child: ["child", "east"].map(|name| Starters::new(&child(name))),
             site,
             area,
             node,
@@ -77,14 +115,12 @@ impl Ground {
 
     /// A parent that has just been started.
     pub fn parent(&self, epoch: u64, planner: PlannerKind, two: bool) -> Agent<AnyPlanner> {
-        agent(self.parent[usize::from(two)].clone(), epoch, planner)
+        self.parent[usize::from(two)].start(epoch, planner)
     }
 
-    /// A child of that name that has just been started.
-    pub fn child(&self, name: &str, epoch: u64, planner: PlannerKind) -> Agent<AnyPlanner> {
-        let mut configuration = self.child.clone();
-        configuration.name = name.into();
-        agent(configuration, epoch, planner)
+    /// A child that has just been started: the one in charge of one area, or that of all others.
+    pub fn child(&self, east: bool, epoch: u64, planner: PlannerKind) -> Agent<AnyPlanner> {
+        self.child[usize::from(east)].start(epoch, planner)
     }
 
     /// A controller that has just been started.
@@ -115,11 +151,6 @@ impl Ground {
             world.without_hindsight()
         }
     }
-}
-
-fn agent(mut configuration: Configuration, epoch: u64, kind: PlannerKind) -> Agent<AnyPlanner> {
-    configuration.epoch = epoch;
-    Agent::new(configuration, AnyPlanner::new(kind, Settings::default()))
 }
 
 /// The map: `n1 n2 | n3 n4 | n5 n6 |`, each bar a door, and the last leads back to the first.

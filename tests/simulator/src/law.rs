@@ -1,6 +1,8 @@
 //! What must hold, whatever happens: the invariants of `docs/reliability.md`, checked by somebody
 //! who sees everything and takes no part.
 
+mod answers;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use agent_core::agent::Agent;
@@ -61,8 +63,12 @@ pub struct Law {
     gone: BTreeSet<(Who, Symbol)>,
     /// What each is having done.
     doing: [Option<ActionId>; 6],
+    /// What was answered to which instruction.
+    answers: BTreeMap<answers::Told, Answer>,
     /// What is to stop, since when that was promised.
     promised: BTreeMap<ActionId, Time>,
+    /// When it was last told to stop.
+    told_to_stop: BTreeMap<ActionId, Time>,
     /// Until then, or still, things go wrong that may make stopping take longer.
     trouble_until: Time,
     /// Whether somebody's journal was lost: then some of this cannot be asked for.
@@ -207,6 +213,7 @@ impl Law {
                         }
                     }
                     Instruction::Suspend { .. } => {
+                        self.told_to_stop.insert(id.clone(), now);
                         // Decision 10. What is told to start only now is stopped right after.
                         let started = self.sent_to_start[who.index()].get(id);
                         if started.is_some_and(|at| *at < now)
@@ -305,6 +312,12 @@ impl Law {
     /// A superior has taken in an answer. Whether something was promised to stop from now on.
     pub fn answered(&mut self, now: Time, instruction: &Instruction, answer: &Answer) -> bool {
         if let Instruction::Suspend { id } = instruction {
+            let told = self.told_to_stop.get(id);
+            let mut starts = self.sent_to_start.iter().filter_map(|sent| sent.get(id));
+            if *answer == Answer::Suspending && starts.any(|at| Some(at) > told) {
+                // The report that it is suspended was faster, and it is to go on by now.
+                return false;
+            }
             if *answer == Answer::Suspending {
                 self.promised.insert(id.clone(), now);
                 return true;

@@ -4,8 +4,10 @@
 //! the world is that of `executor_sim`. A scenario is made from a seed, is a value, and can be
 //! replayed and cut down. Somebody who sees everything ([`law`]) says what was wrong.
 
+pub mod counts;
 pub mod dice;
 pub mod disk;
+pub mod fleet;
 pub mod ground;
 pub mod law;
 pub mod mutant;

@@ -9,11 +9,16 @@ use std::time::{Duration, Instant};
 
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
+use intermezzo_simulator::counts::Counts;
+use intermezzo_simulator::fleet::Fleet;
 use intermezzo_simulator::ground::Ground;
 use intermezzo_simulator::mutant::{MUTANTS, Mutant};
-use intermezzo_simulator::scenario::Scenario;
 use intermezzo_simulator::shrink::{keep_panics, run_safely, shrink};
 use serde_json::json;
+
+/// A scenario is hundreds of thousands of small things made and dropped.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 /// Whole stacks in virtual time with everything going wrong: crashes, loss, partitions, full disks.
 #[derive(Parser)]
@@ -39,9 +44,30 @@ struct Cli {
     /// Goes on after a failure, and names the seeds of all.
     #[arg(long)]
     keep_going: bool,
+    /// Only scenarios of several robots; otherwise one in eight is.
+    #[arg(long)]
+    several: bool,
     /// A summary in JSON.
     #[arg(long)]
     json: bool,
+}
+
+impl Cli {
+    fn fleet(&self, seed: u64) -> Fleet {
+        if self.several {
+            Fleet::of(seed)
+        } else {
+            Fleet::at(seed)
+        }
+    }
+}
+
+/// For how long this thread, which does all the work, has had a processor, where that can be known.
+/// The time of the day says little on a machine that has other things to do.
+fn processor_seconds() -> Option<f64> {
+    let stat = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = stat.split_whitespace().next()?.parse().ok()?;
+    Some(nanoseconds / 1e9)
 }
 
 fn main() -> ExitCode {
@@ -70,20 +96,23 @@ fn main() -> ExitCode {
 
 /// The story of one scenario.
 fn tell(cli: &Cli, ground: &Ground, seed: u64, mutant: Option<Mutant>) -> ExitCode {
-    let mut scenario = Scenario::of(seed);
-    let outcome = run_safely(ground, &scenario, mutant, false);
+    let mut fleet = cli.fleet(seed);
+    let outcome = run_safely(ground, &fleet, mutant, false);
     if outcome.broken.is_some() && !cli.whole {
-        let many = scenario.happenings.len();
-        scenario = shrink(ground, &scenario, mutant);
-        let few = scenario.happenings.len();
+        let many = fleet.happenings();
+        fleet = shrink(ground, &fleet, mutant);
+        let few = fleet.happenings();
         println!("of {many} happenings {few} are enough:");
     }
-    let outcome = run_safely(ground, &scenario, mutant, true);
-    println!("{scenario}");
+    let outcome = run_safely(ground, &fleet, mutant, true);
+    println!("{fleet}");
     for line in &outcome.story {
         println!("{line}");
     }
-    println!("\n{:?}", outcome.counts);
+    println!();
+    for (what, times) in outcome.counts.named() {
+        println!("{times:>12} {what}");
+    }
     match outcome.broken {
         None => ExitCode::SUCCESS,
         Some(broken) => {
@@ -106,15 +135,16 @@ fn run_many(cli: &Cli, ground: &Ground, mutant: Option<Mutant>) -> ExitCode {
         bar.set_style(style);
     }
     let begun = Instant::now();
-    let mut counts: BTreeMap<&'static str, u64> = BTreeMap::new();
+    let mut counts = Counts::default();
     let mut wrong: Vec<(u64, String)> = Vec::new();
-    let mut ran = 0;
+    let (mut ran, mut robots, mut fleets) = (0, 0, 0);
     for seed in cli.first..cli.first.saturating_add(cli.seeds) {
-        let outcome = run_safely(ground, &Scenario::of(seed), mutant, false);
+        let fleet = cli.fleet(seed);
+        let outcome = run_safely(ground, &fleet, mutant, false);
         ran += 1;
-        for (what, times) in outcome.counts {
-            *counts.entry(what).or_default() += times;
-        }
+        robots += fleet.robots.len();
+        fleets += u64::from(fleet.robots.len() > 1);
+        counts += &outcome.counts;
         if let Some(broken) = outcome.broken {
             wrong.push((seed, broken));
             if !cli.keep_going {
@@ -123,12 +153,8 @@ fn run_many(cli: &Cli, ground: &Ground, mutant: Option<Mutant>) -> ExitCode {
         }
         if ran % 64 == 0 {
             bar.set_position(ran);
-            let faults = FAULTS.iter().filter_map(|fault| counts.get(fault));
-            bar.set_message(format!(
-                "{} faults, {} wrong",
-                faults.sum::<u64>(),
-                wrong.len()
-            ));
+            let faults = counts.faults();
+            bar.set_message(format!("{faults} faults, {} wrong", wrong.len()));
             let late = cli
                 .seconds
                 .is_some_and(|most| begun.elapsed() >= Duration::from_secs(most));
@@ -139,7 +165,8 @@ fn run_many(cli: &Cli, ground: &Ground, mutant: Option<Mutant>) -> ExitCode {
     }
     bar.finish_and_clear();
     let seconds = begun.elapsed().as_secs_f64();
-    let faults: u64 = FAULTS.iter().filter_map(|fault| counts.get(fault)).sum();
+    let busy = processor_seconds().unwrap_or(seconds);
+    let faults = counts.faults();
     if cli.json {
         let wrong: Vec<_> = wrong
             .iter()
@@ -148,18 +175,20 @@ fn run_many(cli: &Cli, ground: &Ground, mutant: Option<Mutant>) -> ExitCode {
         println!(
             "{}",
             json!({
-                "scenarios": ran, "first": cli.first, "seconds": seconds,
-                "per_second": ran as f64 / seconds, "faults": faults, "counts": counts,
+                "scenarios": ran, "of_several_robots": fleets, "robots": robots,
+                "first": cli.first, "seconds": seconds, "processor_seconds": busy,
+                "per_processor_second": ran as f64 / busy, "faults": faults,
+                "counts": counts.named().collect::<BTreeMap<_, _>>(),
                 "wrong": wrong,
             })
         );
     } else {
         println!(
-            "{ran} scenarios in {seconds:.1} s ({:.0} a second), {faults} faults injected, {} wrong",
-            ran as f64 / seconds,
+            "{ran} scenarios, {fleets} of them of several robots ({robots} robots in all), in {seconds:.1} s ({:.0} a second of a processor), {faults} faults injected, {} wrong",
+            ran as f64 / busy,
             wrong.len()
         );
-        for (what, times) in &counts {
+        for (what, times) in counts.named() {
             println!("{times:>12} {what}");
         }
         for (seed, what) in &wrong {
@@ -173,26 +202,13 @@ fn run_many(cli: &Cli, ground: &Ground, mutant: Option<Mutant>) -> ExitCode {
     }
 }
 
-/// What of the counts was done to the stacks.
-const FAULTS: [&str; 9] = [
-    "processes killed",
-    "lost journals",
-    "freezes",
-    "cuts",
-    "full disks",
-    "slow disks",
-    "robot faults",
-    "messages lost",
-    "messages twice",
-];
-
 /// For each mutant the first seed that catches it.
 fn hunt(cli: &Cli, ground: &Ground) -> ExitCode {
     let mut alive = 0;
     for mutant in MUTANTS {
         let seeds = cli.first..cli.first.saturating_add(cli.seeds);
         let caught = seeds.clone().find_map(|seed| {
-            let outcome = run_safely(ground, &Scenario::of(seed), Some(mutant), false);
+            let outcome = run_safely(ground, &cli.fleet(seed), Some(mutant), false);
             Some((seed, outcome.broken?))
         });
         match caught {

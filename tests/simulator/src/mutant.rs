@@ -63,10 +63,12 @@ pub enum Mutant {
     UnknownIsSuccess,
     /// A restarted agent has lost one goal.
     LoseAGoal,
+    /// Now and then a message for one robot comes to another.
+    MixUpRobots,
 }
 
 /// All of them.
-pub const MUTANTS: [Mutant; 24] = [
+pub const MUTANTS: [Mutant; 25] = [
     Mutant::SkipTheJournal,
     Mutant::LyingDisk,
     Mutant::TornWriting,
@@ -91,6 +93,7 @@ pub const MUTANTS: [Mutant; 24] = [
     Mutant::UnknownIsRepeatable,
     Mutant::UnknownIsSuccess,
     Mutant::LoseAGoal,
+    Mutant::MixUpRobots,
 ];
 
 impl fmt::Display for Mutant {

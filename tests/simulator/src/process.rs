@@ -20,6 +20,8 @@ pub enum Way {
     Neighbour {
         /// Who.
         who: Who,
+        /// Its line.
+        line: u64,
         /// Its epoch.
         epoch: u64,
         /// Through which of its channels.

@@ -7,6 +7,7 @@ use agent_core::planner::PlannerKind;
 use agent_core::protocol::Urgency;
 use executor_sim::Fault;
 
+use crate::counts::Counted;
 use crate::dice::Dice;
 use crate::ground::{DOORS, NODES};
 
@@ -213,20 +214,20 @@ impl What {
         }
     }
 
-    /// Whether it is a fault, and not the ordinary course of things; with a name to count it by.
-    pub fn fault(&self) -> Option<&'static str> {
+    /// Whether it is a fault, and not the ordinary course of things; as which it is counted.
+    pub fn fault(&self) -> Option<Counted> {
         Some(match self {
             Self::Goal { .. } | Self::Again { .. } | Self::Wish { .. } | Self::Door { .. } => {
                 return None;
             }
-            Self::Weather { .. } => "spells of bad network",
-            Self::Cut { .. } => "cuts",
-            Self::Crash { .. } => "crashes",
-            Self::Freeze { .. } => "freezes",
-            Self::FullDisk { .. } => "full disks",
-            Self::SlowDisk { .. } => "slow disks",
-            Self::LostJournal { .. } => "lost journals",
-            Self::Robot { .. } => "robot faults",
+            Self::Weather { .. } => Counted::BadWeather,
+            Self::Cut { .. } => Counted::Cuts,
+            Self::Crash { .. } => Counted::Crashes,
+            Self::Freeze { .. } => Counted::Freezes,
+            Self::FullDisk { .. } => Counted::FullDisks,
+            Self::SlowDisk { .. } => Counted::SlowDisks,
+            Self::LostJournal { .. } => Counted::LostJournals,
+            Self::Robot { .. } => Counted::RobotFaults,
         })
     }
 }

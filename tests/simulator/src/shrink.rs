@@ -6,10 +6,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use agent_core::model::Time;
 use agent_core::planner::PlannerKind;
 
+use crate::fleet::Fleet;
 use crate::ground::Ground;
 use crate::mutant::Mutant;
 use crate::scenario::{Point, Scenario, What};
-use crate::simulation::{Outcome, run};
+use crate::simulation::{Outcome, run_fleet};
 
 thread_local! {
     static PANICKED: RefCell<Option<String>> = const { RefCell::new(None) };
@@ -23,14 +24,9 @@ pub fn keep_panics() {
     }));
 }
 
-/// Runs a scenario; a panic is something that was wrong, like all else.
-pub fn run_safely(
-    ground: &Ground,
-    scenario: &Scenario,
-    mutant: Option<Mutant>,
-    tells: bool,
-) -> Outcome {
-    let ran = catch_unwind(AssertUnwindSafe(|| run(ground, scenario, mutant, tells)));
+/// Runs what there is of robots; a panic is something that was wrong, like all else.
+pub fn run_safely(ground: &Ground, fleet: &Fleet, mutant: Option<Mutant>, tells: bool) -> Outcome {
+    let ran = catch_unwind(AssertUnwindSafe(|| run_fleet(ground, fleet, mutant, tells)));
     ran.unwrap_or_else(|_| {
         let panicked = PANICKED.with(|panicked| panicked.borrow_mut().take());
         Outcome {
@@ -40,12 +36,30 @@ pub fn run_safely(
     })
 }
 
-/// Takes away from a scenario whatever it goes wrong without. It must go wrong.
-pub fn shrink(ground: &Ground, scenario: &Scenario, mutant: Option<Mutant>) -> Scenario {
-    let breaks = |scenario: &Scenario| {
-        let outcome = run_safely(ground, scenario, mutant, false);
-        outcome.broken.is_some()
-    };
+/// Takes away whatever it goes wrong without. It must go wrong.
+pub fn shrink(ground: &Ground, fleet: &Fleet, mutant: Option<Mutant>) -> Fleet {
+    let breaks = |fleet: &Fleet| run_safely(ground, fleet, mutant, false).broken.is_some();
+    let mut least = fleet.clone();
+    for robot in (0..least.robots.len()).rev() {
+        let mut less = least.clone();
+        less.robots.remove(robot);
+        if breaks(&less) {
+            least = less;
+        }
+    }
+    for robot in 0..least.robots.len() {
+        let with = |scenario: &Scenario| {
+            let mut less = least.clone();
+            less.robots[robot] = scenario.clone();
+            less
+        };
+        let shrunk = shrink_one(&least.robots[robot], |less| breaks(&with(less)));
+        least.robots[robot] = shrunk;
+    }
+    least
+}
+
+fn shrink_one(scenario: &Scenario, breaks: impl Fn(&Scenario) -> bool) -> Scenario {
     let mut least = scenario.clone();
     loop {
         let before = least.clone();

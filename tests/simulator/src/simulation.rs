@@ -8,6 +8,7 @@ mod recalling;
 mod receiving;
 mod seeing;
 mod sending;
+mod together;
 mod users;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -16,6 +17,7 @@ use agent_core::model::{Symbol, Time};
 use agent_core::protocol::{ActionId, Arrival, GoalRequest, Inbox, Input, Machine, Row};
 use executor_sim::World;
 
+use crate::counts::{Counted, Counts};
 use crate::dice::drawn;
 use crate::ground::Ground;
 use crate::law::Law;
@@ -25,6 +27,7 @@ use crate::scenario::{EVERYONE, Point, Scenario, Who, Wish};
 use crate::store::Store;
 use crate::wire::{Channel, Message};
 
+pub use together::{run, run_fleet};
 use users::goals;
 
 /// Without an answer for so long a message counts as lost.
@@ -50,21 +53,19 @@ pub struct Outcome {
     /// What was wrong.
     pub broken: Option<String>,
     /// How often what was done to it.
-    pub counts: BTreeMap<&'static str, u64>,
+    pub counts: Counts,
     /// What happened, a line each, if it was to be told.
     pub story: Vec<String>,
 }
 
 #[derive(Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "nearly all of them are deliveries"
-)]
 enum Due {
     Deliver {
+        /// The number of the robot whose it is.
+        robot: u8,
         from: Who,
         to: Who,
-        message: Message,
+        message: Box<Message>,
     },
     Retry {
         who: Who,
@@ -114,6 +115,8 @@ enum Due {
 #[derive(Default)]
 struct Node {
     role: Option<Role>,
+    /// When its process is to be woken.
+    wake: Option<Time>,
     epoch: u64,
     store: Store,
     writing: Option<Vec<Row>>,
@@ -169,10 +172,13 @@ struct Cut {
 pub struct Simulation<'a> {
     ground: &'a Ground,
     scenario: &'a Scenario,
+    /// Its number: so messages are addressed.
+    robot: u8,
     mutant: Option<Mutant>,
     now: Time,
-    due: BTreeMap<(Time, u64), Due>,
-    counter: u64,
+    /// What has come to be due, and when; whoever keeps the clock takes it.
+    planned: Vec<(Time, Due)>,
+    armings: u64,
     epochs: u64,
     nodes: [Node; 6],
     world: World,
@@ -183,37 +189,36 @@ pub struct Simulation<'a> {
     world_epoch: u64,
     requests: Vec<Request>,
     goals: Vec<(Symbol, String, GoalRequest)>,
+    /// For each acknowledged goal a row of the parent's journal that speaks of it.
+    witnesses: BTreeMap<Symbol, String>,
     cuts: Vec<Cut>,
     weather: Vec<(Time, u64, u64, u64)>,
     messages: u64,
     peace: bool,
     law: Law,
+    /// Hangs on everything that was given to a process, and when.
+    trace: u64,
     tells: bool,
+    story: Vec<(Time, String)>,
     outcome: Outcome,
-}
-
-/// Runs a scenario. `tells`: with its story.
-pub fn run(ground: &Ground, scenario: &Scenario, mutant: Option<Mutant>, tells: bool) -> Outcome {
-    let mut simulation = Simulation::new(ground, scenario, mutant, tells);
-    simulation.go();
-    simulation.outcome.broken = simulation.law.broken.take();
-    simulation.outcome
 }
 
 impl<'a> Simulation<'a> {
     fn new(
         ground: &'a Ground,
         scenario: &'a Scenario,
+        robot: u8,
         mutant: Option<Mutant>,
         tells: bool,
     ) -> Self {
         let mut simulation = Self {
             ground,
             scenario,
+            robot,
             mutant,
             now: Time::ZERO,
-            due: BTreeMap::new(),
-            counter: 0,
+            planned: Vec::new(),
+            armings: 0,
             epochs: 100,
             nodes: std::array::from_fn(|_| Node::with(store(scenario))),
             world: ground.world(scenario.hindsight),
@@ -223,12 +228,15 @@ impl<'a> Simulation<'a> {
             world_epoch: 0,
             requests: Vec::new(),
             goals: goals(scenario),
+            witnesses: BTreeMap::new(),
             cuts: Vec::new(),
             weather: Vec::new(),
             messages: 0,
             peace: false,
             law: Law::default(),
+            trace: 0,
             tells,
+            story: Vec::new(),
             outcome: Outcome::default(),
         };
         let last = scenario.happenings.last().map_or(Time::ZERO, |(at, _)| *at);
@@ -251,22 +259,20 @@ impl<'a> Simulation<'a> {
     }
 
     fn plan(&mut self, at: Time, due: Due) {
-        self.counter += 1;
-        self.due.insert((at.max(self.now), self.counter), due);
+        self.planned.push((at.max(self.now), due));
     }
 
     fn after(&mut self, delay: Time, due: Due) {
         self.plan(self.now + delay, due);
     }
 
-    fn count(&mut self, what: &'static str) {
-        *self.outcome.counts.entry(what).or_default() += 1;
+    fn count(&mut self, what: Counted) {
+        self.outcome.counts.count(what);
     }
 
     fn tell(&mut self, line: impl FnOnce() -> String) {
         if self.tells {
-            let line = format!("{:>9.4} {}", self.now.secs(), line());
-            self.outcome.story.push(line);
+            self.story.push((self.now, line()));
         }
     }
 
@@ -279,55 +285,17 @@ impl<'a> Simulation<'a> {
         drawn(self.scenario.seed, [what, self.messages, self.now.0]) % below.max(1)
     }
 
-    fn go(&mut self) {
-        for _ in 0..MOST_STEPS {
-            if self.law.broken.is_some() {
-                return;
-            }
-            if !self.step() {
-                if self.peace {
-                    self.judge();
-                    return;
-                }
-                return self.broken(|| "it ended before there was peace".to_owned());
-            }
-        }
-        self.broken(|| "it goes round in circles".to_owned());
-    }
-
-    fn step(&mut self) -> bool {
-        let wake = self.next_wake();
-        let next = self.due.first_key_value().map(|(key, _)| *key);
-        let wake_first = match (wake, next) {
-            (None, None) => return false,
-            (Some(_), None) => true,
-            (None, Some(_)) => false,
-            (Some((at, _)), Some((due, _))) => at < due,
-        };
-        if let Some((at, who)) = wake.filter(|_| wake_first) {
-            self.now = self.now.max(at);
-            if self.now > LONGEST {
-                self.broken(|| format!("{who} still wants to be woken after an hour"));
-                return false;
-            }
-            if who == Who::World {
-                self.world.handle(self.now, Input::Wake);
-                self.hear_the_world();
-            } else {
-                self.give(who, Arrival::Input(Input::Wake), None);
-            }
-            return true;
-        }
-        let Some(((at, _), due)) = self.due.pop_first() else {
-            return false;
-        };
-        self.now = self.now.max(at);
+    /// Whoever is to be woken is.
+    fn wake(&mut self, who: Who) {
         if self.now > LONGEST {
-            self.broken(|| "things still go on after an hour".to_owned());
-            return false;
+            return self.broken(|| format!("{who} still wants to be woken after an hour"));
         }
-        self.happen(due);
-        true
+        if who == Who::World {
+            self.world.handle(self.now, Input::Wake);
+            self.hear_the_world();
+        } else {
+            self.give(who, Arrival::Input(Input::Wake), None);
+        }
     }
 
     fn next_wake(&self) -> Option<(Time, Who)> {
@@ -336,15 +304,32 @@ impl<'a> Simulation<'a> {
             if node.frozen.is_some() {
                 return None;
             }
-            Some((node.role.as_ref()?.wake_at()?.max(self.now), *who))
+            Some((node.wake?.max(self.now), *who))
         });
         let world = self.world.wake_at().map(|at| (at, Who::World));
         roles.chain(world).min_by_key(|(at, _)| *at)
     }
 
     fn happen(&mut self, due: Due) {
+        if self.now > LONGEST {
+            return self.broken(|| "things still go on after an hour".to_owned());
+        }
         match due {
-            Due::Deliver { from, to, message } => self.deliver(from, to, message),
+            Due::Deliver {
+                robot,
+                from,
+                to,
+                message,
+            } => {
+                let own = self.robot;
+                if robot != own {
+                    let kind = message.kind();
+                    return self.broken(|| {
+                        format!("{kind} for {to} of robot {robot} comes to robot {own}")
+                    });
+                }
+                self.deliver(from, to, *message);
+            }
             Due::Retry {
                 who,
                 epoch,
@@ -382,22 +367,6 @@ impl<'a> Simulation<'a> {
                 }
             }
             Due::Peace => self.make_peace(),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_scenario_runs_twice_alike() {
-        let ground = Ground::new();
-        for seed in 0..20 {
-            let scenario = Scenario::of(seed);
-            let one = run(&ground, &scenario, None, true);
-            let other = run(&ground, &scenario, None, true);
-            assert_eq!(one.story, other.story);
         }
     }
 }

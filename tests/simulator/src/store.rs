@@ -69,13 +69,14 @@ impl Store {
     ///
     /// # Errors
     /// If the journal says that it cannot.
-    pub fn write(&mut self, rows: &[Row]) -> Result<(), String> {
-        apply(&mut self.rows, rows);
+    pub fn write(&mut self, rows: Vec<Row>) -> Result<(), String> {
         let journal = self.real.as_mut().and_then(|real| real.journal.as_mut());
-        match journal {
-            Some(journal) => journal.commit(rows).map_err(|error| error.to_string()),
+        let written = match journal {
+            Some(journal) => journal.commit(&rows).map_err(|error| error.to_string()),
             None => Ok(()),
-        }
+        };
+        apply(&mut self.rows, rows);
+        written
     }
 
     /// Tries to write to a disk that is full.
@@ -106,7 +107,7 @@ impl Store {
         if let (Some(rows), Some(journal)) = (interrupted, &mut real.journal) {
             real.disk.dies_after(dice.roll(MOST_CALLS));
             let mut after = self.rows.clone();
-            apply(&mut after, rows);
+            apply(&mut after, rows.iter().cloned());
             match journal.commit(rows) {
                 Ok(()) => self.rows = after,
                 Err(_) => real.or_else = Some(after),
@@ -129,11 +130,11 @@ impl Store {
 const MOST_CALLS: u64 = 16;
 
 /// Makes rows what they are after a writing.
-pub fn apply(to: &mut Rows, rows: &[Row]) {
+pub fn apply(to: &mut Rows, rows: impl IntoIterator<Item = Row>) {
     for Row { key, value } in rows {
         match value {
-            Some(value) => to.insert(key.clone(), value.clone()),
-            None => to.remove(key),
+            Some(value) => to.insert(key, value),
+            None => to.remove(&key),
         };
     }
 }

@@ -1,8 +1,8 @@
 //! Some thousand scenarios, and the mutants that they catch.
 
+use intermezzo_simulator::fleet::Fleet;
 use intermezzo_simulator::ground::Ground;
 use intermezzo_simulator::mutant::{MUTANTS, Mutant};
-use intermezzo_simulator::scenario::Scenario;
 use intermezzo_simulator::shrink::{run_safely, shrink};
 use serde::Deserialize;
 
@@ -17,9 +17,9 @@ fn whatever_goes_wrong_every_acknowledged_goal_ends_and_nothing_is_done_twice() 
         .unwrap_or(SCENARIOS);
     let ground = Ground::new();
     for seed in 0..scenarios {
-        let scenario = Scenario::of(seed);
-        if let Some(broken) = run_safely(&ground, &scenario, None, false).broken {
-            let least = shrink(&ground, &scenario, None);
+        let fleet = Fleet::at(seed);
+        if let Some(broken) = run_safely(&ground, &fleet, None, false).broken {
+            let least = shrink(&ground, &fleet, None);
             let story = run_safely(&ground, &least, None, true);
             panic!(
                 "seed {seed}: {broken}\n{least}\n{}\n{:?}",
@@ -49,7 +49,7 @@ fn every_mutant_on_the_list_is_caught_by_its_seed() {
     assert!(listed.mutant.len() >= 20);
     for Caught { name, seed } in listed.mutant {
         assert!(MUTANTS.contains(&name));
-        let outcome = run_safely(&ground, &Scenario::of(seed), Some(name), false);
+        let outcome = run_safely(&ground, &Fleet::at(seed), Some(name), false);
         assert!(outcome.broken.is_some(), "{name} survives seed {seed}");
     }
 }
@@ -58,15 +58,11 @@ fn every_mutant_on_the_list_is_caught_by_its_seed() {
 fn a_failing_scenario_shrinks_to_one_that_fails_and_has_no_more_in_it() {
     let ground = Ground::new();
     let mutant = Some(Mutant::SuspendedTooSoon);
-    let scenario = (0..50)
-        .map(Scenario::of)
-        .find(|scenario| {
-            run_safely(&ground, scenario, mutant, false)
-                .broken
-                .is_some()
-        })
+    let fleet = (0..50)
+        .map(Fleet::at)
+        .find(|fleet| run_safely(&ground, fleet, mutant, false).broken.is_some())
         .expect("it is caught soon");
-    let least = shrink(&ground, &scenario, mutant);
+    let least = shrink(&ground, &fleet, mutant);
     assert!(run_safely(&ground, &least, mutant, false).broken.is_some());
-    assert!(least.happenings.len() < scenario.happenings.len());
+    assert!(least.happenings() < fleet.happenings());
 }

@@ -13,30 +13,22 @@ impl Simulation<'_> {
     pub(super) fn deliver_to_world(&mut self, message: Message) {
         match message {
             Message::Command(envelope) => {
+                let (epoch, seq) = (envelope.epoch, envelope.seq);
                 let response = match self.world_hears.receive(&envelope) {
                     Receipt::New { .. } => {
                         self.world_hears.applied(&envelope, None);
                         self.world_epoch = envelope.epoch;
-                        let seq = envelope.seq;
-                        let text = format!("{:?}", envelope.body);
-                        self.tell(|| format!("world     is told {text}"));
-                        self.world
-                            .handle(self.now, Input::Local(envelope.body.clone()));
+                        self.tell(|| format!("world     is told {:?}", envelope.body));
+                        self.world.handle(self.now, Input::Local(envelope.body));
                         self.hear_the_world();
                         Response::Applied { seq, answer: None }
                     }
-                    Receipt::Again(_) => Response::Applied {
-                        seq: envelope.seq,
-                        answer: None,
-                    },
-                    Receipt::Old => Response::Superseded { seq: envelope.seq },
-                    Receipt::Gap { due } => Response::Gap {
-                        seq: envelope.seq,
-                        due,
-                    },
+                    Receipt::Again(_) => Response::Applied { seq, answer: None },
+                    Receipt::Old => Response::Superseded { seq },
+                    Receipt::Gap { due } => Response::Gap { seq, due },
                 };
                 let message = Message::Response {
-                    epoch: envelope.epoch,
+                    epoch,
                     kind: Kind::Local,
                     response,
                     line: 1,

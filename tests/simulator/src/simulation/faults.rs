@@ -59,8 +59,8 @@ impl Simulation<'_> {
             What::Crash { who, point, down } => match point {
                 Point::Now => self.crash(who, false, down),
                 _ => {
-                    self.counter += 1;
-                    let armed = self.counter;
+                    self.armings += 1;
+                    let armed = self.armings;
                     self.nodes[who.index()].armed = Some((armed, point, down));
                     self.after(Time::from_secs(10.0), Due::CrashAtLast { who, armed });
                 }

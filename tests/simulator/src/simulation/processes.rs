@@ -3,6 +3,7 @@
 use agent_core::model::Time;
 use agent_core::protocol::{Effect, Rows, Unreadable};
 
+use crate::counts::Counted;
 use crate::dice::{Dice, drawn};
 use crate::mutant::Mutant;
 use crate::process::{AnyArrival, Board, Role, Way};
@@ -37,10 +38,12 @@ impl Simulation<'_> {
         self.tell(|| format!("{who:<9} starts in epoch {epoch} with {} rows", rows.len()));
         self.law.handled(self.now, who, &role);
         let node = &mut self.nodes[who.index()];
+        node.wake = role.wake_at();
         node.role = Some(role);
         node.epoch = epoch;
         node.instructed = false;
         if who == Who::Parent {
+            self.witnesses.clear();
             self.owes_nothing();
         }
         for other in EVERYONE {
@@ -64,7 +67,7 @@ impl Simulation<'_> {
                 Role::agent(who, epoch, agent, rows, self.mutant)
             }
             _ => {
-                let agent = self.ground.child(who.name(), epoch, scenario.planner);
+                let agent = self.ground.child(who == Who::East, epoch, scenario.planner);
                 Role::agent(who, epoch, agent, rows, self.mutant)
             }
         }
@@ -75,17 +78,18 @@ impl Simulation<'_> {
         if node.role.take().is_none() {
             return;
         }
+        node.wake = None;
         let mut interrupted = node.writing.take();
         let mut written = Ok(());
         match (&mut interrupted, self.mutant) {
             (Some(rows), Some(Mutant::TornWriting)) => {
                 rows.truncate(rows.len() / 2);
-                written = node.store.write(rows);
+                written = node.store.write(std::mem::take(rows));
                 interrupted = None;
             }
             (_, Some(Mutant::SkipTheJournal)) => interrupted = None,
             (Some(rows), _) if kept => {
-                written = node.store.write(rows);
+                written = node.store.write(std::mem::take(rows));
                 interrupted = None;
             }
             _ => {}
@@ -105,7 +109,7 @@ impl Simulation<'_> {
         }
         self.law.died(who);
         self.law.trouble(self.now + down);
-        self.count("processes killed");
+        self.count(Counted::ProcessesKilled);
         self.tell(|| format!("{who:<9} is killed"));
         for other in EVERYONE {
             self.look_soon(other, who);
@@ -140,7 +144,9 @@ impl Simulation<'_> {
         let Some(role) = &mut node.role else {
             return;
         };
+        self.trace = drawn(self.trace, [now.0, who.index() as u64, self.messages]);
         role.handle(now, arrival, way);
+        node.wake = role.wake_at();
         self.law.handled(now, who, role);
         self.pump(who);
     }
@@ -236,7 +242,11 @@ impl Simulation<'_> {
             Some(Mutant::LyingDisk) => node.writings % 8 == 7,
             _ => false,
         };
-        if !lies && let Err(error) = node.store.write(&rows) {
+        if who == Who::Parent {
+            self.speaks_anew(&rows);
+        }
+        let node = &mut self.nodes[who.index()];
+        if !lies && let Err(error) = node.store.write(rows) {
             return self.broken(|| format!("the journal of {who}: {error}"));
         }
         if let Some(role) = &mut node.role {
@@ -245,7 +255,7 @@ impl Simulation<'_> {
         if who == Who::Parent {
             self.owes_nothing();
         }
-        self.count("writings");
+        self.count(Counted::Writings);
         self.pump(who);
     }
 

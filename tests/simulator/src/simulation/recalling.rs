@@ -15,10 +15,28 @@ impl Simulation<'_> {
         let node = &self.nodes[Who::Parent.index()];
         let line = node.role.as_ref().map_or(0, Role::line);
         let rows = node.store.rows();
-        let lost = self.law.owed(line).find(|goal| !speak_of(rows, goal));
-        if let Some(goal) = lost.cloned() {
+        let mut lost = None;
+        for goal in self.law.owed(line) {
+            if self.witnesses.contains_key(goal) {
+                continue;
+            }
+            match who_speaks_of(rows, goal) {
+                Some(key) => {
+                    self.witnesses.insert(goal.clone(), key.clone());
+                }
+                None => lost = Some(goal.clone()),
+            }
+        }
+        if let Some(goal) = lost {
             self.broken(|| format!("S1: the parent has forgotten {goal}"));
         }
+    }
+
+    /// These rows of the parent's are about to be written. A row that has spoken of a goal and is
+    /// not among them still does.
+    pub(super) fn speaks_anew(&mut self, rows: &[Row]) {
+        self.witnesses
+            .retain(|_, key| rows.iter().all(|row| row.key != *key));
     }
 
     /// S10: who recalls what was just written, with what is in the journal, is as the one that has
@@ -26,7 +44,7 @@ impl Simulation<'_> {
     pub(super) fn recalls(&mut self, who: Who, writing: &[Row]) {
         let node = &self.nodes[who.index()];
         let mut rows = node.store.rows().clone();
-        apply(&mut rows, writing);
+        apply(&mut rows, writing.iter().cloned());
         let recalled = self.role(who, node.epoch, &rows);
         let wrong = match (recalled, &node.role) {
             (Ok(mut recalled), Some(role)) => {
@@ -45,13 +63,16 @@ impl Simulation<'_> {
     }
 }
 
-/// Whether there is anything of a goal in a journal, be it live or ended.
-pub(super) fn speak_of(rows: &Rows, goal: &Symbol) -> bool {
+/// A row of a journal in which there is anything of a goal, be it live or ended.
+pub(super) fn who_speaks_of<'a>(rows: &'a Rows, goal: &Symbol) -> Option<&'a String> {
     let name = goal.as_str();
-    rows.iter().any(|(key, value)| {
+    // Rows of goals first.
+    let goals = rows.range("m/".to_owned()..).chain(rows.iter());
+    let mut speaking = goals.filter(|(key, value)| {
         let is_name = |part: &[u8]| part == name.as_bytes();
         key.contains(name) || value.windows(name.len()).any(is_name)
-    })
+    });
+    speaking.next().map(|(key, _)| key)
 }
 
 /// What a start changes in a journal: the epoch is another, a robot halts, with a number, and what

@@ -35,14 +35,15 @@ impl Simulation<'_> {
             let text = in_words(&message);
             self.tell(|| format!("{from:<9} -> {to}: {text}"));
         }
-        let neighbour = |epoch, kind| Way::Neighbour {
+        let neighbour = |line, epoch, kind| Way::Neighbour {
             who: from,
+            line,
             epoch,
             kind,
         };
         match message {
             Message::Instruction(envelope) => {
-                let way = neighbour(envelope.epoch, Kind::Instruction);
+                let way = neighbour(envelope.line, envelope.epoch, Kind::Instruction);
                 let starts = matches!(
                     envelope.body,
                     agent_core::protocol::Instruction::Execute { .. }
@@ -63,7 +64,7 @@ impl Simulation<'_> {
             Message::Report(envelope) => self.deliver_report(from, to, envelope),
             Message::Sensor(envelope) => {
                 // The world has one epoch.
-                let way = neighbour(0, Kind::Local);
+                let way = neighbour(0, 0, Kind::Local);
                 self.give(to, Arrival::Local(envelope), Some(way));
             }
             Message::Response {
@@ -107,6 +108,7 @@ impl Simulation<'_> {
     ) {
         let way = Way::Neighbour {
             who: from,
+            line: envelope.line,
             epoch: envelope.epoch,
             kind: Kind::Report,
         };
@@ -167,10 +169,7 @@ impl Simulation<'_> {
                     (Kind::Instruction, Some(instruction)) => {
                         // Without one it was answered before the sender had written it down, and
                         // the receiver was told since that it has.
-                        let mut answer = answer.unwrap_or(agent_core::protocol::Answer::Accepted);
-                        if self.mutant == Some(Mutant::ForgetAnswers) && attempts > 1 {
-                            answer = agent_core::protocol::Answer::Accepted;
-                        }
+                        let answer = answer.unwrap_or(agent_core::protocol::Answer::Accepted);
                         self.tell(|| format!("{by:<9} answers {who}: {answer:?} to {}", seq));
                         if self.law.answered(self.now, &instruction, &answer) {
                             let id = instruction.id().clone();
@@ -182,9 +181,12 @@ impl Simulation<'_> {
                             by,
                             line,
                             seq,
-                            answer,
+                            answer: answer.clone(),
                         };
                         self.give(who, arrival, None);
+                        if let Some(role) = &self.nodes[who.index()].role {
+                            self.law.heeds(self.now, who, role, &instruction, &answer);
+                        }
                     }
                     (Kind::Report, _) => {
                         let by = name(by);

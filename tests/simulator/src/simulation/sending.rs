@@ -1,9 +1,11 @@
 //! What goes out of a process, and over the network.
 
 use agent_core::model::{Symbol, Time};
-use agent_core::protocol::{Effect, Response};
+use agent_core::protocol::{Answer, Effect, Response};
 use executor_sim::MotorCommand;
 
+use crate::counts::Counted;
+use crate::mutant::Mutant;
 use crate::process::{AnyEffect, Kind, Way};
 use crate::scenario::Who;
 use crate::wire::{Channel, Message};
@@ -84,16 +86,27 @@ impl Simulation<'_> {
                 if let Response::Goal(Ok(id)) = &response {
                     let id = id.clone();
                     self.law.acknowledged(&id, line);
-                    self.count("goals acknowledged");
+                    self.count(Counted::GoalsAcknowledged);
                 }
                 self.tell(|| format!("{who:<9} answers about goal{goal}: {response:?}"));
                 self.send(who, Who::User, Message::Verdict(request));
             }
             Way::Neighbour {
                 who: to,
+                line: its,
                 epoch,
                 kind,
             } => {
+                let mut response = response;
+                if let Response::Applied { seq, answer } = &mut response
+                    && let Some(answer) = answer
+                {
+                    let told = (who, line, to, its, *seq);
+                    if self.mutant == Some(Mutant::ForgetAnswers) && self.law.was_answered(told) {
+                        *answer = Answer::Accepted;
+                    }
+                    self.law.answers(self.now, told, answer);
+                }
                 let message = Message::Response {
                     epoch,
                     kind,
@@ -189,14 +202,14 @@ impl Simulation<'_> {
             channel.attempts == attempt && channel.queue.front().is_some_and(|(s, _)| *s == seq)
         });
         if still {
-            self.count("messages sent again");
+            self.count(Counted::MessagesSentAgain);
             self.attempt(who, kind, to);
         }
     }
 
     /// Puts a message on the network, which may lose, repeat and delay it.
     pub(super) fn send(&mut self, from: Who, to: Who, message: Message) {
-        self.count("messages");
+        self.count(Counted::Messages);
         let now = self.now;
         let spread = self.scenario.spread.0;
         let mut delay = self.scenario.delay.0 + self.draw(2, spread + 1);
@@ -206,27 +219,39 @@ impl Simulation<'_> {
             .find(|(until, ..)| *until > now)
             .copied();
         if self.is_cut(from, to) {
-            self.count("messages lost");
+            self.count(Counted::MessagesLost);
             return;
         }
         if let Some((_, lost, twice, late)) = bad {
             if self.draw(3, 1000) < lost {
-                self.count("messages lost");
+                self.count(Counted::MessagesLost);
                 self.tell(|| format!("{from:<9} -> {to}: {} is lost", message.kind()));
                 return;
             }
             if self.draw(4, 1000) < late {
-                self.count("messages late");
+                self.count(Counted::MessagesLate);
                 delay += self.draw(5, 3_000_000);
             }
             if self.draw(6, 1000) < twice {
-                self.count("messages twice");
+                self.count(Counted::MessagesTwice);
                 let later = Time(delay + self.draw(7, 2_000_000));
                 let message = message.clone();
-                self.after(later, Due::Deliver { from, to, message });
+                self.put_on(later, from, to, message);
             }
         }
-        self.after(Time(delay), Due::Deliver { from, to, message });
+        self.put_on(Time(delay), from, to, message);
+    }
+
+    fn put_on(&mut self, delay: Time, from: Who, to: Who, message: Message) {
+        let robot = self.robot;
+        let message = Box::new(message);
+        let deliver = Due::Deliver {
+            robot,
+            from,
+            to,
+            message,
+        };
+        self.after(delay, deliver);
     }
 
     pub(super) fn is_cut(&self, one: Who, other: Who) -> bool {
