@@ -43,12 +43,15 @@ pub enum Step {
     Ask(usize),
     /// That letter arrives.
     Deliver(usize),
+    /// It arrives, and will arrive once more. Nothing is different before it has arrived once.
+    DeliverOneOfTwo(usize),
     /// It is lost.
     Lose(usize),
-    /// It will arrive once more than it would have.
-    Duplicate(usize),
     /// What is not answered is sent again.
     Repeat(Side),
+    /// What is answered is sent again, since the answer of that place is lost. Nothing is different
+    /// before that: until then it might have been late.
+    RepeatUnheard(Side, usize),
     /// What was being written is on the disk.
     Written(Side),
     /// What is being done is done.
@@ -122,6 +125,11 @@ impl Protocol {
     /// Whether the first message is neither under way nor answered. A repetition although it is on its
     /// way is a duplicate.
     fn repeats(&self, state: &State, side: Side) -> bool {
+        self.is_unanswered(state, side, &state.wire)
+    }
+
+    /// Whether the first message is not among those letters, nor an answer to it, nor an answer to be said.
+    fn is_unanswered(&self, state: &State, side: Side, wire: &[u32]) -> bool {
         let tables = &*self.tables;
         let Some((first, seq)) = state.seen(tables, side).first else {
             return false;
@@ -129,10 +137,17 @@ impl Protocol {
         if state.seen(tables, side.other()).is_busy {
             return false;
         }
-        !state.wire.iter().any(|letter| {
+        !wire.iter().any(|letter| {
             let stamp = tables.stamp(*letter);
             *letter == first || stamp.kind == Kind::Response(side) && stamp.seq == seq
         })
+    }
+
+    /// Whether, if the letter of that place were lost, what it answers would be sent again.
+    fn is_missed(&self, state: &State, side: Side, place: usize) -> bool {
+        let mut wire = state.wire.clone();
+        wire.remove(place);
+        self.is_unanswered(state, side, &wire)
     }
 
     /// Whether a letter resumes something while the executor misses its superior. It would be answered by
@@ -161,16 +176,29 @@ impl Protocol {
     fn faults(&self, state: &State, mut step: impl FnMut(Step)) {
         let tables = &*self.tables;
         each(state, |place, letter| {
-            let kind = tables.stamp(letter).kind;
-            // What is repeated until it is answered is, if it is lost and repeated, as if it had been
-            // late. So it need not be lost.
-            let is_repeated = matches!(kind, Kind::Instruction { .. } | Kind::Report);
-            if state.left.losses > 0 && !is_repeated {
-                step(Step::Lose(place));
+            let Stamp { kind, epoch, .. } = *tables.stamp(letter);
+            let is_old = || epoch < state.seen(tables, Side::Boss).epoch;
+            match kind {
+                // It is repeated until it is answered: lost and repeated is late.
+                Kind::Instruction { .. } | Kind::Report => {}
+                Kind::Response(side) => {
+                    if state.left.losses > 0 && self.is_missed(state, side, place) {
+                        step(Step::RepeatUnheard(side, place));
+                    }
+                }
+                // Past what it runs ahead of it comes too late to be of any use, and that is taken off the
+                // wire. Only if that never comes it makes a difference.
+                Kind::StopAhead => {
+                    if state.left.losses > 0 && is_old() {
+                        step(Step::Lose(place));
+                    }
+                }
             }
             // The second of two answers is of no interest to anybody.
-            if state.left.duplicates > 0 && !matches!(kind, Kind::Response(_)) {
-                step(Step::Duplicate(place));
+            let is_answer = matches!(kind, Kind::Response(_));
+            let is_early = self.comes_too_early(state, letter);
+            if state.left.duplicates > 0 && !is_answer && !is_early {
+                step(Step::DeliverOneOfTwo(place));
             }
         });
         if state.left.crashes > 0 {
@@ -202,14 +230,20 @@ impl Protocol {
                 let Stamp { kind, .. } = *tables.stamp(letter);
                 state.happens(tables, kind.to(), Cue::Arrives(letter));
             }
+            Step::DeliverOneOfTwo(place) => {
+                state.left.duplicates -= 1;
+                let letter = state.wire[place];
+                let Stamp { kind, .. } = *tables.stamp(letter);
+                state.happens(tables, kind.to(), Cue::Arrives(letter));
+            }
             Step::Lose(place) => {
                 state.left.losses -= 1;
                 state.wire.remove(place);
             }
-            Step::Duplicate(place) => {
-                state.left.duplicates -= 1;
-                let letter = state.wire[place];
-                state.wire.insert(place, letter);
+            Step::RepeatUnheard(side, place) => {
+                state.left.losses -= 1;
+                state.wire.remove(place);
+                self.take(state, Step::Repeat(side));
             }
             Step::Repeat(side) => {
                 if let Some((first, _)) = state.seen(tables, side).first {

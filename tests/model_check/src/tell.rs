@@ -19,8 +19,17 @@ impl Protocol {
         match step {
             Step::Ask(number) => format!("a user asks for {}", goal(*number)),
             Step::Deliver(place) => format!("arrives: {}", letter(*place)),
+            Step::DeliverOneOfTwo(place) => {
+                format!("arrives, AND WILL AGAIN: {}", letter(*place))
+            }
             Step::Lose(place) => format!("IS LOST: {}", letter(*place)),
-            Step::Duplicate(place) => format!("IS DOUBLED: {}", letter(*place)),
+            Step::RepeatUnheard(side, place) => {
+                let lost = letter(*place);
+                format!(
+                    "IS LOST: {lost}; the {} repeats what it answers",
+                    side.name()
+                )
+            }
             Step::Repeat(side) => format!("the {} repeats what is not answered", side.name()),
             Step::Written(side) => format!("the {}'s disk has it", side.name()),
             Step::Finish => {
