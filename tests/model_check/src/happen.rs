@@ -6,6 +6,7 @@ use agent_core::protocol::{
 };
 
 use crate::boss::{Bosses, request};
+use crate::fence::Fence;
 use crate::letter::{Letter, Side, Way};
 use crate::mutant::Mutant;
 use crate::node::Node;
@@ -32,6 +33,8 @@ pub enum Event {
     Again,
     /// It dies and starts again.
     Dies(Left),
+    /// Nobody dies any more.
+    Spared,
 }
 
 /// What a crash in the middle of a writing leaves.
@@ -89,7 +92,12 @@ impl Rules {
                 node.take(Arrival::Input(input), Some(Way::User(number)));
             }
             Event::Arrives(letter) => self.arrives(&mut node, *letter, &mut said),
-            Event::Written => node.written(),
+            Event::Written => {
+                if self.mutant == Some(Mutant::Unwritten) {
+                    node.flight = node.flight.take().map(|_| Vec::new());
+                }
+                node.written();
+            }
             Event::Hears(sensor) => {
                 if let Some(sensor) = M::hears(sensor) {
                     node.take(Arrival::Input(Input::Local(sensor)), None);
@@ -101,6 +109,10 @@ impl Rules {
                 node.take(neighbour::<M>(true), None);
             }
             Event::Dies(left) => return self.dies(node, left),
+            Event::Spared => {
+                node.is_spared = true;
+                return (node, said);
+            }
         }
         self.pump(&mut node, &mut said);
         (node, said)
@@ -122,6 +134,9 @@ impl Rules {
     }
 
     fn arrives<M: Role>(&self, node: &mut Node<M>, letter: Letter, said: &mut Vec<Said>) {
+        if M::SIDE == Side::Arm {
+            Fence::arrives(node, &letter);
+        }
         if Mutant::ignores(self.mutant, &letter) {
             return;
         }
@@ -217,7 +232,10 @@ impl Rules {
     /// What it has to say goes out.
     fn pump<M: Role>(&self, node: &mut Node<M>, said: &mut Vec<Said>) {
         let effects = node.effects(self.mutant == Some(Mutant::Hasty));
+        let before = said.len();
         told(node, effects, said);
+        let what = Fence::is_run_over(node, &said[before..]);
+        said.extend(what.map(Said::Broken));
     }
 }
 
@@ -226,7 +244,12 @@ fn told<M: Role>(node: &mut Node<M>, effects: Vec<Effect<M::Out, Way>>, said: &m
     for effect in effects {
         let letter = match effect {
             Effect::Instruct { message, .. } => Letter::Instruction(message),
-            Effect::Report { message, .. } => Letter::Report(message),
+            Effect::Report { mut message, .. } => {
+                // Nobody keeps answers to reports, so it is the same to everybody how far they are
+                // written down.
+                message.settled = 0;
+                Letter::Report(message)
+            }
             Effect::StopAhead { message, .. } => {
                 said.push(Said::Letter(Letter::StopAhead(message)));
                 continue;

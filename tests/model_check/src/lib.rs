@@ -7,6 +7,7 @@
 
 pub mod arm;
 pub mod boss;
+pub mod fence;
 pub mod happen;
 pub mod letter;
 pub mod lives;

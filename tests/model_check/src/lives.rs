@@ -32,6 +32,8 @@ pub enum Cue {
     Again,
     /// It dies and starts again.
     Dies(Left),
+    /// Nobody dies any more.
+    Spared,
 }
 
 /// What becomes of it.

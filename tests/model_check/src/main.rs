@@ -4,7 +4,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use clap::Parser;
-use intermezzo_model_check::{Budget, Protocol, check};
+use intermezzo_model_check::{Budget, Mutant, Protocol, check};
 
 /// Checks the protocol in every order of events.
 #[derive(Debug, Parser)]
@@ -21,6 +21,9 @@ struct Options {
     /// Processes that may die.
     #[arg(long, default_value_t = 1)]
     crashes: u8,
+    /// Make a mistake on purpose, which is to be found.
+    #[arg(long)]
+    mutant: Option<Mutant>,
     /// Compare processes that look the same in all that they do.
     #[arg(long)]
     doubt: bool,
@@ -38,7 +41,7 @@ fn main() -> ExitCode {
         duplicates: options.duplicates,
         crashes: options.crashes,
     };
-    let mut protocol = Protocol::new(options.goals, budget, None);
+    let mut protocol = Protocol::new(options.goals, budget, options.mutant);
     if options.doubt {
         protocol = protocol.doubting();
     }

@@ -257,6 +257,7 @@ impl Protocol {
             Step::Crash(side, left) => {
                 state.left.crashes -= 1;
                 state.crash(tables, side, Cue::Dies(left));
+                state.spare(tables);
             }
         }
         state.sweep(tables);

@@ -9,7 +9,7 @@ use crate::node::Node;
 use crate::role::Role;
 
 /// A mistake on purpose, which must be found.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug, Eq, PartialEq, clap::ValueEnum)]
 pub enum Mutant {
     /// What depends on a writing leaves before it.
     Hasty,
@@ -21,6 +21,8 @@ pub enum Mutant {
     NoFence,
     /// An instruction that comes again is followed again.
     Afresh,
+    /// The journal says that it has written and has not.
+    Unwritten,
 }
 
 impl Mutant {

@@ -9,6 +9,7 @@ use agent_core::model::Time;
 use agent_core::protocol::{Arrival, Effect, Input, Row, Rows, Station, Unreadable};
 use siphasher::sip128::{Hasher128, SipHasher13};
 
+use crate::fence::Fence;
 use crate::letter::{Letter, Way};
 use crate::role::Role;
 
@@ -25,6 +26,10 @@ pub struct Node<M: Role> {
     pub flight: Option<Vec<Row>>,
     /// What is to be sent to its neighbour; the first is under way.
     pub queue: VecDeque<Letter>,
+    /// Whether it will not die any more. Then it does not matter what is on the disk.
+    pub is_spared: bool,
+    /// What it was told to stop ahead of its turn.
+    pub fence: Option<Fence>,
 }
 
 impl<M: Role> Node<M> {
@@ -36,6 +41,8 @@ impl<M: Role> Node<M> {
             disk,
             flight: None,
             queue: VecDeque::new(),
+            is_spared: false,
+            fence: None,
         })
     }
 
@@ -78,25 +85,30 @@ impl<M: Role> Node<M> {
         disk
     }
 
-    /// The fingerprint of all that matters for what it does next.
-    pub fn print(&self) -> u128 {
+    /// The fingerprint of all that matters for what it does next, and of what a look at its disk shows.
+    pub fn print(&self, kept: u8) -> u128 {
         let (rows, words) = self.station.sameness();
+        let mut hasher = SipHasher13::new();
+        self.flight.is_some().hash(&mut hasher);
         // What observers are told is not looked at, but it is written down, too.
-        let told = rows.iter().any(|row| !matters(&row.key));
+        let is_told = rows.iter().any(|row| !matters(&row.key));
+        let is_changed = rows.iter().any(|row| matters(&row.key));
+        (is_told, is_changed).hash(&mut hasher);
         let mut now = (*self.disk).clone();
         apply(&mut now, self.flight.clone().unwrap_or_default());
         apply(&mut now, rows);
-        let mut hasher = SipHasher13::new();
-        hash_rows(&self.disk, &mut hasher);
-        let flight = self.flight.iter().flatten();
-        self.flight.is_some().hash(&mut hasher);
-        for row in flight.filter(|row| matters(&row.key)) {
-            (&row.key, &row.value).hash(&mut hasher);
-        }
         hash_rows(&now, &mut hasher);
+        if !self.is_spared {
+            hash_rows(&self.disk, &mut hasher);
+            let flight = self.flight.iter().flatten();
+            for row in flight.filter(|row| matters(&row.key)) {
+                (&row.key, &row.value).hash(&mut hasher);
+            }
+        }
         words.hash(&mut hasher);
         format!("{:?}", self.queue).hash(&mut hasher);
-        (told, self.epoch, self.station.machine().volatile()).hash(&mut hasher);
+        let volatile = self.station.machine().volatile();
+        (self.epoch, volatile, self.is_spared, &self.fence, kept).hash(&mut hasher);
         hasher.finish128().as_u128()
     }
 }

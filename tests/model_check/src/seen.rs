@@ -16,7 +16,8 @@ pub struct Seen {
     pub first: Option<(u32, u64)>,
     /// Of its start.
     pub epoch: u64,
-    /// The epoch and the number of the last message that it has applied and written down.
+    /// The epoch and the number of the last message that it has applied and will not forget: if it can
+    /// die, as it has written it down.
     pub heard: (u64, u64),
     /// The goals it knows of, a bit each.
     pub known: u8,
@@ -35,12 +36,16 @@ impl Seen {
     /// what is kept.
     pub fn of<M: Role>(node: &Node<M>, goals: usize, first: Option<u32>, kept: u8) -> Self {
         let machine = node.station.machine();
+        let heard = match node.is_spared {
+            true => heard(&node.disk_to_be(), M::SIDE),
+            false => heard(&node.disk, M::SIDE),
+        };
         Self {
             is_writing: node.flight.is_some(),
             is_busy: node.station.has_to_say(),
             first: first.zip(node.queue.front().map(Letter::seq)),
             epoch: node.epoch,
-            heard: heard(&node.disk, M::SIDE),
+            heard,
             known: machine.known(goals),
             kept,
             ended: machine.ended(goals),

@@ -65,6 +65,7 @@ impl State {
                 break;
             }
         }
+        state.spare(tables);
         state.look(tables);
         state
     }
@@ -145,6 +146,14 @@ impl State {
                 self.notices = 0;
                 self.happens(tables, Side::Boss, Cue::Again);
             }
+        }
+    }
+
+    /// What is on a disk matters no more if nobody can die any more.
+    pub fn spare(&mut self, tables: &Tables) {
+        if self.left.crashes == 0 {
+            self.happens(tables, Side::Boss, Cue::Spared);
+            self.happens(tables, Side::Arm, Cue::Spared);
         }
     }
 

@@ -75,3 +75,18 @@ fn an_inbox_that_is_not_written_down_is_found() {
 fn an_instruction_that_is_followed_again_when_it_comes_again_is_found() {
     is_found(Mutant::Afresh, 1, DUPLICATE);
 }
+
+#[test]
+fn what_stops_something_and_is_not_heeded_as_that_has_not_begun_is_found() {
+    is_found(Mutant::NoFence, 2, Budget::default());
+}
+
+#[test]
+fn a_journal_that_does_not_write_is_found() {
+    is_found(Mutant::Unwritten, 1, Budget::default());
+}
+
+#[test]
+fn an_answer_that_does_not_say_how_something_ended_is_found() {
+    is_found(Mutant::NoOutcome, 2, DUPLICATE);
+}
