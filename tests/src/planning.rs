@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use agent_core::model::FactChange;
-use agent_core::planner::{Agenda, AnyPlanner, Outcome, Planner, PlannerKind, Problem, Settings};
+use agent_core::planner::{
+    Agenda, AnyPlanner, Confirmed, Outcome, Plan, Planner, PlannerKind, Problem, Settings,
+};
 use agent_core::protocol::GoalId;
 
 /// Which planner an agent under test has.
@@ -79,6 +81,23 @@ impl Planner for TestPlanner {
         let outcome = self.planner.think(expansions)?;
         self.compare(&outcome);
         Some(outcome)
+    }
+
+    fn confirm(&mut self, kept: &Plan) -> Option<Confirmed> {
+        let confirmed = self.planner.confirm(kept)?;
+        if let (Some(judge), Some((problem, agendas))) = (&mut self.judge, self.asked.take()) {
+            judge.begin(problem, &agendas);
+            let expected = judge
+                .think(u64::MAX)
+                .and_then(|found| found.plans.first().cloned());
+            let cost = expected.as_ref().map(|plan| plan.cost);
+            assert_eq!(
+                Some(confirmed.cost),
+                cost,
+                "{kept:?}\nfrom scratch {expected:?}"
+            );
+        }
+        Some(confirmed)
     }
 
     fn is_thinking(&self) -> bool {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::excerpts::Excerpt;
 use super::{Agent, Intention};
 use crate::model::{Atom, Fact, FactChange, Map, Symbol};
 use crate::planner::{self, Planner, Problem, Step};
@@ -59,20 +60,37 @@ impl<P: Planner> Agent<P> {
     }
 
     /// The map that goes with a step, with what is believed now of things in it that change.
-    pub(super) fn map_for(&self, step: &Step) -> Option<Map> {
-        let mut map = self.configuration.maps_below.map_of(self.place_of(step)?)?;
-        // What the map says of changing things was true once; what is believed now goes instead.
+    pub(super) fn map_for(&mut self, step: &Step) -> Option<Map> {
+        let place = self.place_of(step)?.clone();
+        let mut excerpts = std::mem::take(&mut self.excerpts);
+        let excerpt = excerpts.of(&place, || self.excerpt(&place));
+        let map = excerpt.map(|excerpt| {
+            let mut map = excerpt.map.clone();
+            let changing = excerpt.changing.iter();
+            map.news
+                .extend(changing.map(|fact| match self.belief.holds(fact) {
+                    true => FactChange::Add(fact.clone()),
+                    false => FactChange::Remove(fact.clone()),
+                }));
+            map
+        });
+        self.excerpts = excerpts;
+        map
+    }
+
+    /// What goes down with everything that is about a place.
+    fn excerpt(&self, place: &Symbol) -> Option<Excerpt> {
+        let mut map = self.configuration.maps_below.map_of(place)?;
+        // What the map says of changing things was true once; what is believed goes instead.
         let observable = &self.configuration.model.observable;
         map.take_changing(observable);
-        for predicate in observable {
-            for fact in self.possible_facts(predicate, &map) {
-                map.news.push(match self.belief.holds(&fact) {
-                    true => FactChange::Add(fact),
-                    false => FactChange::Remove(fact),
-                });
-            }
-        }
-        Some(map)
+        let changing = observable
+            .iter()
+            .flat_map(|predicate| self.possible_facts(predicate, &map));
+        Some(Excerpt {
+            changing: changing.collect(),
+            map,
+        })
     }
 
     /// All facts of one of our predicates about objects on a map.

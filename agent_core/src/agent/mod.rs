@@ -11,6 +11,7 @@ mod command;
 mod configuration;
 mod emergency;
 mod ended;
+mod excerpts;
 mod execution;
 mod goal;
 mod instruct;
@@ -43,6 +44,7 @@ use std::sync::Arc;
 use crate::model::{Belief, Domain, FactChange, Map, Symbol, Task, Time};
 use crate::planner::{Planner, Step};
 use crate::protocol::{ActionId, GoalId, Happening, Input, Machine, Output, Reply};
+use excerpts::Excerpts;
 use memory::Memory;
 use neighbour::Neighbours;
 
@@ -82,6 +84,9 @@ pub struct Agent<P> {
     outputs: VecDeque<Output<Infallible>>,
     /// There may be more to do than waiting.
     unsettled: bool,
+    /// The belief has changed, and plans of goals that do not run were not looked at since.
+    believes_otherwise: bool,
+    excerpts: Excerpts,
     neighbours: Neighbours,
     /// It has been restarted, and nothing has come in since.
     restarted: bool,
@@ -154,6 +159,8 @@ impl<P: Planner> Agent<P> {
             now: Time::ZERO,
             outputs: VecDeque::new(),
             unsettled: false,
+            believes_otherwise: false,
+            excerpts: Excerpts::default(),
             neighbours: Neighbours::default(),
             restarted: false,
         };
@@ -243,6 +250,9 @@ impl<P: Planner> Agent<P> {
                     if !self.planner.is_thinking() {
                         self.plan();
                     }
+                    if self.continues() {
+                        continue;
+                    }
                     let slice = self.configuration.policy.expansions_per_slice;
                     let Some(outcome) = self.planner.think(slice) else {
                         return;
@@ -326,6 +336,9 @@ impl<P: Planner> Machine for Agent<P> {
         };
         self.watch_the_clock();
         self.settle();
+        if std::mem::take(&mut self.believes_otherwise) {
+            self.review_plans();
+        }
         reply
     }
 

@@ -74,7 +74,8 @@ impl<P: Planner> Agent<P> {
         for intention in self.aside.unblock(&facts) {
             self.waiting.add(intention);
         }
-        self.review_plans();
+        // When it is settled who runs: what is taken up now is planned for, and needs no review.
+        self.believes_otherwise = true;
     }
 
     /// Stops the running action if what it protects is broken, and says if the plan it belongs to

@@ -1,9 +1,11 @@
 //! Steps 3 to 6 of Algorithm 2: planning, selection, and what becomes of suspended actions.
 
 use super::{Agent, Intention, Phase, WaitsFor};
-use crate::model::{Action, Fact};
+use crate::model::{Cost, Fact};
 use crate::planner::{self, Outcome, Plan, Planner, Problem};
 use crate::protocol::{ActionId, Happening, Resumption};
+
+const STILL_HOLDS: &str = "the suspended plan still holds";
 
 impl<P: Planner> Agent<P> {
     /// Step 3: begins to plan for the running goal, over everything that is left of it.
@@ -22,12 +24,11 @@ impl<P: Planner> Agent<P> {
         let Some(running) = &mut self.running else {
             return;
         };
-        let kept = std::mem::take(&mut running.intention.plans);
-        let valid = still_valid(&problem, kept.clone());
-        let Some((selected, alternatives)) = select(valid, outcome.plans) else {
+        let kept = Kept::judged(&problem, std::mem::take(&mut running.intention.plans));
+        let Some((selected, alternatives)) = select(kept.valid(), outcome.plans) else {
             return self.no_plan(outcome.wanted.into_iter().collect());
         };
-        let how = resumption(&problem, &kept, &selected);
+        let how = kept.resumption(&selected);
         let same = how == Resumption::Continued;
         running.intention.fits = true;
         running.intention.plans = vec![selected];
@@ -36,7 +37,7 @@ impl<P: Planner> Agent<P> {
         let goal = running.intention.goal.id.clone();
         let resumed = std::mem::take(&mut running.resumed);
         if resumed {
-            let why = self.why_resumed(how, &problem, &kept);
+            let why = kept.why(how);
             self.emit(
                 Some(&goal),
                 Happening::GoalResumed {
@@ -51,6 +52,41 @@ impl<P: Planner> Agent<P> {
             self.tell_plan("it is the cheapest", outcome.expanded_for_best);
         }
         self.execute_next();
+    }
+
+    /// Goes on with the plan that was kept for a goal that is taken up, if the planner can tell without
+    /// planning that there is no better one. Others that were kept beside it stay: whoever selects one
+    /// carries it out in mind first. Returns whether it did.
+    pub(super) fn continues(&mut self) -> bool {
+        let Some(running) = &mut self.running else {
+            return false;
+        };
+        let intention = &mut running.intention;
+        let Some(first) = intention.plans.first_mut() else {
+            return false;
+        };
+        if !running.resumed || intention.cancelled.is_some() {
+            return false;
+        }
+        let Some(confirmed) = self.planner.confirm(first) else {
+            return false;
+        };
+        first.cost = confirmed.cost;
+        intention.fits = true;
+        running.resumed = false;
+        running.surprised = false;
+        let goal = intention.goal.id.clone();
+        self.emit(
+            Some(&goal),
+            Happening::GoalResumed {
+                how: Resumption::Continued,
+                why: STILL_HOLDS.to_owned(),
+                expanded: confirmed.expanded,
+            },
+        );
+        self.clear_what_is_not_resumed();
+        self.execute_next();
+        true
     }
 
     /// Announces the plan that is followed.
@@ -135,19 +171,6 @@ impl<P: Planner> Agent<P> {
         self.aside.add(running.intention, waits_for);
     }
 
-    /// Decision 12, in words.
-    fn why_resumed(&self, how: Resumption, problem: &Problem, kept: &[Plan]) -> String {
-        let broken = kept
-            .first()
-            .and_then(|plan| planner::simulate(problem, &plan.steps, false).err());
-        match (how, broken) {
-            (Resumption::Continued, _) => "the suspended plan still holds".to_owned(),
-            (_, Some(why)) => why,
-            (_, None) if kept.is_empty() => "there was no plan yet".to_owned(),
-            (_, None) => "another plan is cheaper now".to_owned(),
-        }
-    }
-
     /// Looks whether the first plans of goals that do not run still hold, and says so where that
     /// has changed (the plans in the stack are kept up with the belief).
     pub(super) fn review_plans(&mut self) {
@@ -184,20 +207,66 @@ impl<P: Planner> Agent<P> {
     }
 }
 
-/// The plans that still hold, with what they cost now.
-fn still_valid(problem: &Problem, kept: Vec<Plan>) -> Vec<Plan> {
-    // One of which nothing is known but tasks has to be planned for.
-    let kept = kept
-        .into_iter()
-        .filter(|plan| !plan.steps.is_empty() || plan.rest.is_empty());
-    kept.filter_map(|mut plan| {
-        let cost = planner::simulate(problem, &plan.steps, false).ok()?;
-        if plan.rest.is_empty() {
-            plan.cost = cost;
+/// Plans that were kept, and of each what it costs now or why it no longer holds.
+struct Kept(Vec<(Plan, Result<Cost, String>)>);
+
+impl Kept {
+    fn judged(problem: &Problem, plans: Vec<Plan>) -> Self {
+        let judged = plans.into_iter().map(|plan| {
+            let verdict = planner::simulate(problem, &plan.steps, false);
+            (plan, verdict)
+        });
+        Self(judged.collect())
+    }
+
+    /// Those that still hold, with what they cost now.
+    fn valid(&self) -> Vec<Plan> {
+        let valid = self.0.iter().filter_map(|(plan, verdict)| {
+            let cost = verdict.as_ref().ok()?;
+            // One of which nothing is known but tasks has to be planned for.
+            if plan.steps.is_empty() && !plan.rest.is_empty() {
+                return None;
+            }
+            let mut plan = plan.clone();
+            if plan.rest.is_empty() {
+                plan.cost = *cost;
+            }
+            Some(plan)
+        });
+        valid.collect()
+    }
+
+    /// Decision 12, told from the plans themselves, so that it means the same with every planner.
+    fn resumption(&self, selected: &Plan) -> Resumption {
+        let same = |(plan, verdict): &(Plan, Result<Cost, String>)| {
+            verdict.is_ok() && plan.purposes().eq(selected.purposes())
+        };
+        match self.0.iter().position(same) {
+            Some(0) => Resumption::Continued,
+            Some(_) => Resumption::Alternative,
+            None => {
+                let last = selected.purposes().next_back();
+                let mut kept = self.0.iter().map(|(plan, _)| plan);
+                let shared =
+                    kept.any(|plan| !plan.steps.is_empty() && plan.purposes().next_back() == last);
+                match shared {
+                    true => Resumption::Repaired,
+                    false => Resumption::Replanned,
+                }
+            }
         }
-        Some(plan)
-    })
-    .collect()
+    }
+
+    /// The same in words.
+    fn why(&self, how: Resumption) -> String {
+        let words = match (how, self.0.first()) {
+            (Resumption::Continued, _) => STILL_HOLDS,
+            (_, Some((_, Err(why)))) => why,
+            (_, Some((_, Ok(_)))) => "another plan is cheaper now",
+            (_, None) => "there was no plan yet",
+        };
+        words.to_owned()
+    }
 }
 
 /// The cheapest plan first. A kept plan wins against a new one of the same cost, and an earlier
@@ -219,35 +288,10 @@ fn select(kept: Vec<Plan>, new: Vec<Plan>) -> Option<(Plan, Vec<Plan>)> {
     Some((plans.next()?, plans.collect()))
 }
 
-/// Decision 12, told from the plans themselves, so that it means the same with every planner.
-fn resumption(problem: &Problem, kept: &[Plan], selected: &Plan) -> Resumption {
-    let purposes = |plan: &Plan| plan.purposes().cloned().collect::<Vec<Action>>();
-    let now = purposes(selected);
-    let holds = |plan: &Plan| planner::simulate(problem, &plan.steps, false).is_ok();
-    let same = kept
-        .iter()
-        .position(|plan| purposes(plan) == now && holds(plan));
-    match same {
-        Some(0) => Resumption::Continued,
-        Some(_) => Resumption::Alternative,
-        None => {
-            let last = selected.purposes().next_back();
-            let shared = kept
-                .iter()
-                .any(|plan| !plan.steps.is_empty() && plan.purposes().next_back() == last);
-            if shared {
-                Resumption::Repaired
-            } else {
-                Resumption::Replanned
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Atom, Cost};
+    use crate::model::Atom;
     use crate::planner::{Item, Step, TaskList};
 
     fn plan(actions: &[&str], cost: u64) -> Plan {

@@ -1,6 +1,8 @@
 //! The planner that was chosen when the program began.
 
-use super::{Agenda, GraphPlanner, NaivePlanner, Outcome, Plan, Planner, Problem, Settings};
+use super::{
+    Agenda, Confirmed, GraphPlanner, NaivePlanner, Outcome, Plan, Planner, Problem, Settings,
+};
 use crate::model::FactChange;
 use crate::protocol::GoalId;
 
@@ -54,6 +56,10 @@ impl Planner for AnyPlanner {
 
     fn think(&mut self, expansions: u64) -> Option<Outcome> {
         self.planner_mut().think(expansions)
+    }
+
+    fn confirm(&mut self, kept: &Plan) -> Option<Confirmed> {
+        self.planner_mut().confirm(kept)
     }
 
     fn is_thinking(&self) -> bool {

@@ -41,7 +41,7 @@ pub use what_if::{Considered, WhatIf, consider, if_mended};
 
 use std::collections::BTreeSet;
 
-use crate::model::{Fact, FactChange};
+use crate::model::{Cost, Fact, FactChange};
 use crate::protocol::GoalId;
 
 /// How far a plan is decomposed before it may be followed.
@@ -105,6 +105,17 @@ pub struct Outcome {
     pub proved: bool,
 }
 
+/// A plan that was kept is one of the best.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Confirmed {
+    /// What it costs now.
+    pub cost: Cost,
+    /// As in [`Outcome`].
+    pub expanded: u64,
+    /// As in [`Outcome`].
+    pub evaluated: u64,
+}
+
 /// Something that finds plans, in slices, so that planning never blocks listening (decision 9).
 ///
 /// Decision 7 has three outcomes: plans, the proof that there is none, and *unknown as yet*, which
@@ -126,6 +137,13 @@ pub trait Planner {
 
     /// Goes on for about so many expansions; `None` if it is not done, or has nothing to do.
     fn think(&mut self, expansions: u64) -> Option<Outcome>;
+
+    /// Says that a plan that was kept still holds and is one of the best for what was begun, if little
+    /// planning is enough to know; then there is nothing left to think about. `None` says nothing about
+    /// the plan: [`think`](Self::think). A planner that keeps nothing never says so.
+    fn confirm(&mut self, _kept: &Plan) -> Option<Confirmed> {
+        None
+    }
 
     /// Whether there is something to go on with.
     fn is_thinking(&self) -> bool;

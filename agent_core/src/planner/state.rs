@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::Problem;
 use super::matching::for_each_binding;
-use crate::model::{Belief, Change, Clause, Effect, Fact, Number, Parameter, Pattern, Symbol};
+use crate::model::{
+    Belief, Change, Clause, Effect, Fact, Number, Parameter, Pattern, Symbol, Term,
+};
 
 /// What is different from the belief.
 ///
@@ -123,6 +125,9 @@ impl<'a> View<'a> {
             change.fact.ground(bindings).into_iter().for_each(found);
             return;
         }
+        if !holds && change.when.is_empty() && self.each_of_all(change, bindings, found) {
+            return;
+        }
         // Only what holds needs to be removed, which binds the variables faster than their types.
         let mut when = change.when.clone();
         if !holds {
@@ -146,6 +151,49 @@ impl<'a> View<'a> {
                     .for_each(&mut *found)
             },
         );
+    }
+
+    /// The same where nothing is said but that all facts of a kind are removed, as most effects do that
+    /// quantify: `(forall (?x - node) (not (at ?x)))`. Returns whether it is so.
+    fn each_of_all(
+        &self,
+        change: &Change,
+        bindings: &[Option<Symbol>],
+        found: &mut dyn FnMut(Fact),
+    ) -> bool {
+        let stands_for = |term: &Term, variable: usize| match term {
+            Term::Variable(index) => *index == bindings.len() + variable,
+            Term::Constant(_) => false,
+        };
+        let args = &change.fact.args;
+        let once = (0..change.over.len()).all(|variable| {
+            args.iter()
+                .filter(|term| stands_for(term, variable))
+                .count()
+                == 1
+        });
+        let bound = |term: &Term| match term {
+            Term::Variable(index) if *index < bindings.len() => bindings[*index].is_some(),
+            _ => true,
+        };
+        if !once || !args.iter().all(bound) {
+            return false;
+        }
+        let mut all = bindings.to_vec();
+        all.resize(bindings.len() + change.over.len(), None);
+        for fact in self.matching(&change.fact, &all) {
+            let of_its_type = |(term, arg): (&Term, &Symbol)| match term {
+                Term::Variable(index) if *index >= bindings.len() => {
+                    let declared = change.over.get(*index - bindings.len());
+                    declared.is_none_or(|variable| self.problem.fits(arg, &variable.kind))
+                }
+                _ => true,
+            };
+            if args.iter().zip(&fact.args).all(of_its_type) {
+                found(fact);
+            }
+        }
+        true
     }
 
     /// Makes a fact hold or not in `delta`.

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use agent_core::model::FactChange;
-use agent_core::planner::{Agenda, AnyPlanner, Outcome, Plan, Planner, Problem};
+use agent_core::planner::{Agenda, AnyPlanner, Confirmed, Outcome, Plan, Planner, Problem};
 use agent_core::protocol::GoalId;
 
 /// What a planner has done since somebody last looked.
@@ -79,6 +79,17 @@ impl Planner for Metered {
             self.meter.evaluated += outcome.evaluated;
         }
         outcome
+    }
+
+    fn confirm(&mut self, kept: &Plan) -> Option<Confirmed> {
+        let begun = Instant::now();
+        let confirmed = self.planner.confirm(kept);
+        self.meter.planning += begun.elapsed();
+        if let Some(confirmed) = confirmed {
+            self.meter.expanded += confirmed.expanded;
+            self.meter.evaluated += confirmed.evaluated;
+        }
+        confirmed
     }
 
     fn is_thinking(&self) -> bool {

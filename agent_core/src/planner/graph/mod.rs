@@ -10,6 +10,7 @@
 mod alternatives;
 mod code;
 mod collect;
+mod confirm;
 mod decompose;
 mod dive;
 mod eval;
@@ -43,8 +44,8 @@ use replay::Replay;
 use search::{Search, Step, walk};
 use world::World;
 
-use super::{Agenda, Outcome, Plan, Planner, Problem, Settings, TaskList};
-use crate::model::{Fact, FactChange};
+use super::{Agenda, Confirmed, Outcome, Plan, Planner, Problem, Settings, TaskList};
+use crate::model::{Fact, FactChange, Map};
 use crate::protocol::GoalId;
 
 /// Agendas of goals, as tasks.
@@ -100,6 +101,8 @@ struct Thinking {
     /// Whether the best plan is known to be the best.
     proved: bool,
     upset: u64,
+    /// It was asked whether a kept plan is one of the best, and that could not be told.
+    is_in_doubt: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -176,7 +179,9 @@ impl GraphPlanner {
         reading
     }
 
-    fn go_on(&mut self, mut budget: u64) -> Option<Outcome> {
+    /// Thinks until the budget is spent; with `best_only`, also no further than until the best plan is
+    /// known.
+    fn go_on(&mut self, mut budget: u64, best_only: bool) -> Option<Outcome> {
         let graph = self.graphs.last_mut()?;
         let thinking = self.thinking.as_mut()?;
         let depth = self.settings.depth.actions();
@@ -195,7 +200,8 @@ impl GraphPlanner {
                     } else if graph.repair_one() {
                         budget -= 1;
                     } else if !thinking.decide(graph, &self.settings) {
-                        return Some(thinking.none(graph));
+                        // It is told again to whoever thinks.
+                        return (!best_only).then(|| thinking.none(graph));
                     }
                 }
                 Stage::Search(search) => match search.step(graph, depth) {
@@ -222,6 +228,7 @@ impl GraphPlanner {
                     }
                     Step::Exhausted => thinking.stage = Stage::Search(search.clone()),
                 },
+                Stage::Others(_) if best_only => return None,
                 Stage::Others(others) => match others.step(graph, depth) {
                     Some(expanded) => budget = budget.saturating_sub(price(expanded)),
                     None => {
@@ -373,6 +380,7 @@ impl Planner for GraphPlanner {
             some: None,
             proved: true,
             upset: graph.upset,
+            is_in_doubt: false,
         };
         thinking.restart(graph);
         self.thinking = Some(thinking);
@@ -380,9 +388,15 @@ impl Planner for GraphPlanner {
 
     fn think(&mut self, expansions: u64) -> Option<Outcome> {
         let budget = expansions.max(1).saturating_mul(VISITS_PER_EXPANSION);
-        let outcome = self.go_on(budget)?;
+        let outcome = self.go_on(budget, false)?;
         self.thinking = None;
         Some(outcome)
+    }
+
+    fn confirm(&mut self, kept: &Plan) -> Option<Confirmed> {
+        let confirmed = self.confirmed(kept)?;
+        self.thinking = None;
+        Some(confirmed)
     }
 
     fn is_thinking(&self) -> bool {
@@ -424,12 +438,20 @@ impl World {
     fn is_of(&self, problem: &Problem) -> bool {
         same(&self.domain, &problem.domain)
             && same(&self.model, &problem.model)
-            && same(&self.map, &problem.map)
+            && same_map(&self.map, &problem.map)
     }
 }
 
 fn same<T: PartialEq>(a: &Arc<T>, b: &Arc<T>) -> bool {
     same_one(a, b) || **a == **b
+}
+
+/// A child is given its maps with every instruction, most of them again.
+fn same_map(a: &Arc<Map>, b: &Arc<Map>) -> bool {
+    let listed = || a.facts.landmarks().next().is_none() && b.facts.landmarks().next().is_none();
+    let alike = || a.facts.fingerprint() == b.facts.fingerprint();
+    same_one(a, b)
+        || alike() && a.objects == b.objects && (listed() || a.facts == b.facts) && a.news == b.news
 }
 
 /// Without a comparison, which takes as long as both are large.

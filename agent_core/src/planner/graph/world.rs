@@ -446,7 +446,7 @@ impl World {
     }
 
     /// The number of a thing to be done.
-    fn entry(&mut self, item: &Item) -> u32 {
+    pub fn entry(&mut self, item: &Item) -> u32 {
         let atom = self.atom(item.atom());
         if let Item::Task(_) = item {
             return self.lists.task(atom);
