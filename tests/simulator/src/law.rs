@@ -67,6 +67,8 @@ pub struct Law {
     answers: BTreeMap<answers::Told, Answer>,
     /// What is to stop, since when that was promised.
     promised: BTreeMap<ActionId, Time>,
+    /// What has said that it cannot stop, and ends by itself.
+    refused: BTreeSet<ActionId>,
     /// When it was last told to stop.
     told_to_stop: BTreeMap<ActionId, Time>,
     /// Until then, or still, things go wrong that may make stopping take longer.
@@ -158,7 +160,8 @@ impl Law {
         let Some(active) = self.active.and_then(|ticket| self.tickets.get(&ticket)) else {
             return;
         };
-        if active == id || self.part_of.get(active) == Some(id) {
+        let is_it = active == id || self.part_of.get(active) == Some(id);
+        if is_it && !self.refused.contains(active) {
             let active = active.clone();
             self.broken(now, || {
                 format!(
@@ -322,7 +325,10 @@ impl Law {
                 self.promised.insert(id.clone(), now);
                 return true;
             }
-            // What does not stop may be a part of something else that is to.
+            // What does not stop may be a part of something else that is to, then or later.
+            if let Answer::Refused { .. } = answer {
+                self.refused.insert(id.clone());
+            }
             self.trouble(now + BOUND);
         }
         self.learned_from(instruction, answer);
