@@ -1,5 +1,6 @@
 //! A picture of curves.
 
+use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 
 /// One curve, or points of one kind.
@@ -11,7 +12,7 @@ pub struct Line {
     pub points: Vec<(f64, f64)>,
 }
 
-/// Curves over one axis, both axes logarithmic.
+/// Curves over one axis, both axes logarithmic; or, over the names of rows, points beside each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     /// The name of its file, without ending.
@@ -20,6 +21,9 @@ pub struct Chart {
     pub title: String,
     /// What the horizontal axis is, with its unit.
     pub across: String,
+    /// If not empty, what stands at 1, 2, 3, … of the horizontal axis, which is then not logarithmic; what
+    /// is above one name has nothing to do with what is above the next.
+    pub rows: Vec<String>,
     /// What the vertical axis is, with its unit.
     pub up: String,
     /// The curves.
@@ -48,47 +52,77 @@ impl Chart {
         Ok(text)
     }
 
-    fn draw(&self, text: &mut String) -> Result<(), Box<dyn std::error::Error + '_>> {
+    fn draw<'a>(&'a self, text: &'a mut String) -> Result<(), Box<dyn std::error::Error + 'a>> {
         let area = SVGBackend::with_string(text, (860, 520)).into_drawing_area();
         area.fill(&WHITE)?;
         let (across, up) = self.ranges();
-        let mut chart = ChartBuilder::on(&area)
+        let mut chart = ChartBuilder::on(&area);
+        chart
             .caption(&self.title, ("sans-serif", 20))
             .margin(16)
             .x_label_area_size(48)
-            .y_label_area_size(72)
-            .build_cartesian_2d((across.0..across.1).log_scale(), (up.0..up.1).log_scale())?;
+            .y_label_area_size(72);
+        let up = (up.0..up.1).log_scale();
+        if self.rows.is_empty() {
+            let across = (across.0..across.1).log_scale();
+            self.fill(chart.build_cartesian_2d(across, up)?, &short)?;
+        } else {
+            // With room for what the points are.
+            let across = 0.5..self.rows.len() as f64 + 1.9;
+            let name = |place: &f64| {
+                let row = (place - 1.0).round().max(0.0) as usize;
+                let is_row = (place - 1.0 - row as f64).abs() < 0.01;
+                let name = self.rows.get(row).filter(|_| is_row);
+                name.cloned().unwrap_or_default()
+            };
+            self.fill(chart.build_cartesian_2d(across, up)?, &name)?;
+        }
+        area.present()?;
+        Ok(())
+    }
+
+    fn fill<'a, X, Y>(
+        &self,
+        mut chart: ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>,
+        name: &dyn Fn(&f64) -> String,
+    ) -> Result<(), Box<dyn std::error::Error + 'a>>
+    where
+        X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+        Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    {
         chart
             .configure_mesh()
             .x_desc(&self.across)
             .y_desc(&self.up)
-            .x_label_formatter(&short)
+            .x_label_formatter(&name)
             .y_label_formatter(&short)
             .light_line_style(RGBColor(0xee, 0xee, 0xee))
             .draw()?;
         for (line, colour) in self.lines.iter().zip(COLOURS.into_iter().cycle()) {
             let points = || {
-                line.points
-                    .iter()
-                    .copied()
-                    .filter(|(x, y)| *x > 0.0 && *y > 0.0)
+                let points = line.points.iter().copied();
+                points.filter(|(x, y)| *x > 0.0 && *y > 0.0)
             };
+            let joined = points().filter(|_| self.rows.is_empty());
             chart
-                .draw_series(LineSeries::new(points(), colour.stroke_width(2)))?
+                .draw_series(LineSeries::new(joined, colour.stroke_width(2)))?
                 .label(&line.name)
                 .legend(move |(x, y)| {
                     PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2))
                 });
-            let dots = points().map(|point| Circle::new(point, 3, colour.filled()));
+            let size = if self.rows.is_empty() { 3 } else { 5 };
+            let dots = points().map(|point| Circle::new(point, size, colour.filled()));
             chart.draw_series(dots)?;
         }
         chart
             .configure_series_labels()
-            .position(SeriesLabelPosition::UpperLeft)
+            .position(match self.rows.is_empty() {
+                true => SeriesLabelPosition::UpperLeft,
+                false => SeriesLabelPosition::UpperRight,
+            })
             .background_style(WHITE.mix(0.85))
             .border_style(RGBColor(0xcc, 0xcc, 0xcc))
             .draw()?;
-        area.present()?;
         Ok(())
     }
 
@@ -133,6 +167,7 @@ mod tests {
             name: "growth".to_owned(),
             title: "Growth".to_owned(),
             across: "nodes".to_owned(),
+            rows: Vec::new(),
             up: "us".to_owned(),
             lines: vec![line("online", 0.5), line("naive", 3.0)],
         };
@@ -144,11 +179,31 @@ mod tests {
     }
 
     #[test]
+    fn rows_are_named_below_their_points() {
+        let chart = Chart {
+            name: "rows".to_owned(),
+            title: "Rows".to_owned(),
+            across: "emergency".to_owned(),
+            rows: ["n38", "n28", "n29"].map(ToOwned::to_owned).to_vec(),
+            up: "us".to_owned(),
+            lines: vec![Line {
+                name: "online".to_owned(),
+                points: vec![(1.0, 30.0), (2.0, 200.0), (3.0, 40.0)],
+            }],
+        };
+        let svg = chart.svg().unwrap();
+        for row in &chart.rows {
+            assert!(svg.contains(row), "{row} is not in {svg}");
+        }
+    }
+
+    #[test]
     fn a_picture_of_nothing_is_a_picture() {
         let chart = Chart {
             name: "nothing".to_owned(),
             title: "Nothing".to_owned(),
             across: "x".to_owned(),
+            rows: Vec::new(),
             up: "y".to_owned(),
             lines: vec![Line {
                 name: "zero".to_owned(),

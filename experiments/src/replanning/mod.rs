@@ -2,6 +2,7 @@
 
 mod beside;
 mod paper;
+mod pictures;
 
 use agent_core::planner::PlannerKind;
 use agent_core::protocol::Resumption;
@@ -165,6 +166,7 @@ fn report(rows: &[Row]) -> Report {
         beside::doors(with_a_door),
         beside::routes(rows),
     ];
+    report.charts = pictures::charts(of_the_paper);
     report
 }
 

@@ -294,6 +294,7 @@ fn charts(measured: &[Measured], room: &[(u32, &str, u64)]) -> Vec<Chart> {
         name: name.to_owned(),
         title: title.to_owned(),
         across: "nodes of the map".to_owned(),
+        rows: Vec::new(),
         up: "parent, time to resume (us)".to_owned(),
         lines: rows
             .into_iter()
@@ -336,6 +337,7 @@ fn charts(measured: &[Measured], room: &[(u32, &str, u64)]) -> Vec<Chart> {
             name: "scaling_memory".to_owned(),
             title: "Memory of a process".to_owned(),
             across: "nodes of the map".to_owned(),
+            rows: Vec::new(),
             up: "megabytes".to_owned(),
             lines: memory.to_vec(),
         },

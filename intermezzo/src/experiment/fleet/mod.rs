@@ -287,6 +287,7 @@ impl Fleet {
             name: "fleet".to_owned(),
             title: "How fast robots stop and go on, by how many there are".to_owned(),
             across: "robots".to_owned(),
+            rows: Vec::new(),
             up: "us".to_owned(),
             lines: lines.into(),
         });

@@ -274,6 +274,7 @@ impl Latency {
             name: "latency".to_owned(),
             title: "How many take longer".to_owned(),
             across: "us".to_owned(),
+            rows: Vec::new(),
             up: "share that takes longer".to_owned(),
             lines,
         });
