@@ -15,7 +15,10 @@ const UP: &str = "up.lock";
 const ROLES: &str = "roles.lock";
 /// The roles of an `up` that was killed stop the robot and end within this.
 const PATIENCE: Duration = Duration::from_secs(15);
-/// Between two looks whether they have.
+/// A process that is just being started has for a moment all files of the one that starts it, locks
+/// included. Whoever uses the directory still has its lock after this.
+const MOMENT: Duration = Duration::from_millis(300);
+/// Between two looks.
 const RETRY: Duration = Duration::from_millis(20);
 /// No list of processes is longer; what is, is not ours.
 const MAX_LIST_BYTES: u64 = 4096;
@@ -62,40 +65,26 @@ impl StateDir {
         };
         make_private(&own).map_err(failed)?;
         let mut up = open(&own.join(UP)).map_err(failed)?;
-        match up.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                let process = match list(&mut up) {
-                    list if list.is_empty() => String::new(),
-                    list => format!(" (process {list})"),
-                };
-                return Err(Failure::bad_input(format_args!(
-                    "the state of robot `{robot}` in {} is in use by another `intermezzo up`{process}",
-                    path.display()
-                ))
-                .advice("end that one, or choose another --state or --robot"));
-            }
-            Err(TryLockError::Error(error)) => return Err(failed(error)),
+        if !locked_within(&up, MOMENT).await.map_err(failed)? {
+            let process = match list(&mut up) {
+                list if list.is_empty() => String::new(),
+                list => format!(" (process {list})"),
+            };
+            return Err(Failure::bad_input(format_args!(
+                "the state of robot `{robot}` in {} is in use by another `intermezzo up`{process}",
+                path.display()
+            ))
+            .advice("end that one, or choose another --state or --robot"));
         }
         write(&mut up, &std::process::id().to_string()).map_err(failed)?;
         let mut roles = open(&own.join(ROLES)).map_err(failed)?;
-        let asked = Instant::now();
-        loop {
-            match roles.try_lock() {
-                Ok(()) => break,
-                Err(TryLockError::WouldBlock) if asked.elapsed() < PATIENCE => {
-                    tokio::time::sleep(RETRY).await;
-                }
-                Err(TryLockError::WouldBlock) => {
-                    return Err(Failure::failed(format_args!(
-                        "processes of robot `{robot}` that were started earlier still use its state in {} and do not end: {}",
-                        path.display(),
-                        list(&mut roles)
-                    ))
-                    .advice("end them, with kill -9 if need be"));
-                }
-                Err(TryLockError::Error(error)) => return Err(failed(error)),
-            }
+        if !locked_within(&roles, PATIENCE).await.map_err(failed)? {
+            return Err(Failure::failed(format_args!(
+                "processes of robot `{robot}` that were started earlier still use its state in {} and do not end: {}",
+                path.display(),
+                list(&mut roles)
+            ))
+            .advice("end them, with kill -9 if need be"));
         }
         share_with_children(&roles).map_err(failed)?;
         Ok(Self {
@@ -118,6 +107,19 @@ fn open(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true).write(true).create(true).truncate(false);
     options.open(path)
+}
+
+/// Whether the lock could be had in that time.
+async fn locked_within(file: &File, patience: Duration) -> io::Result<bool> {
+    let asked = Instant::now();
+    loop {
+        match file.try_lock() {
+            Ok(()) => return Ok(true),
+            Err(TryLockError::WouldBlock) if asked.elapsed() >= patience => return Ok(false),
+            Err(TryLockError::WouldBlock) => tokio::time::sleep(RETRY).await,
+            Err(TryLockError::Error(error)) => return Err(error),
+        }
+    }
 }
 
 fn write(file: &mut File, text: &str) -> io::Result<()> {
