@@ -34,7 +34,10 @@ pub fn simulate(problem: &Problem, steps: &[Step], running: bool) -> Result<Cost
                 .map_err(|why| format!("{why}, which {action} needs"))?;
         }
         total = total + cost_of(view, action);
-        delta = view.after(&operator.effect, &bindings);
+        let changes = view.changes(&operator.effect, &bindings);
+        for (fact, holds) in changes {
+            View::turn(problem, &mut delta, fact, holds);
+        }
     }
     Ok(total)
 }

@@ -11,7 +11,7 @@ use crate::model::{
 /// What is different from the belief.
 ///
 /// Invariant: no entry says what the belief and the map say anyway, so two ways to the same state
-/// have equal deltas. [`View::set`] keeps it so.
+/// have equal deltas. [`View::turn`] keeps it so.
 pub(super) type Delta = BTreeMap<Fact, bool>;
 
 /// A value for every parameter that has one.
@@ -103,14 +103,23 @@ impl<'a> View<'a> {
     /// The state after an effect, as a new delta.
     pub fn after(&self, effect: &Effect, bindings: &[Option<Symbol>]) -> Delta {
         let mut delta = self.delta.clone();
+        for (fact, holds) in self.changes(effect, bindings) {
+            Self::turn(self.problem, &mut delta, fact, holds);
+        }
+        delta
+    }
+
+    /// What an effect makes of this state, in the order in which it does.
+    pub fn changes(&self, effect: &Effect, bindings: &[Option<Symbol>]) -> Vec<(Fact, bool)> {
+        let mut found = Vec::with_capacity(effect.remove.len() + effect.add.len());
         for (changes, holds) in [(&effect.remove, false), (&effect.add, true)] {
             for change in changes {
                 self.each_fact(change, holds, bindings, &mut |fact| {
-                    self.set(&mut delta, fact, holds);
+                    found.push((fact, holds));
                 });
             }
         }
-        delta
+        found
     }
 
     /// The facts that a change is about in this state.
@@ -198,7 +207,13 @@ impl<'a> View<'a> {
 
     /// Makes a fact hold or not in `delta`.
     pub fn set(&self, delta: &mut Delta, fact: Fact, holds: bool) {
-        if self.before(&fact) == holds {
+        Self::turn(self.problem, delta, fact, holds);
+    }
+
+    /// The same, in a delta that nobody else looks at.
+    pub fn turn(problem: &Problem, delta: &mut Delta, fact: Fact, holds: bool) {
+        let before = problem.belief.holds(&fact) || problem.map.facts.holds(&fact);
+        if before == holds {
             delta.remove(&fact);
         } else {
             delta.insert(fact, holds);
