@@ -3,7 +3,7 @@
 
 use super::code::{Arg, Method};
 use super::eval::{Eval, bind, ground};
-use super::intern::NONE;
+use super::intern::{NONE, Words};
 use super::key::Key;
 use super::lists::NIL;
 use super::world::World;
@@ -35,7 +35,7 @@ pub(super) fn ways(world: &mut World, list: u32, delta: u32) -> Ways {
     let entry = world.lists.entry(entry);
     let (atom, purpose) = (entry.atom, entry.purpose);
     let name = world.facts.name(atom);
-    let args = world.facts.args(atom).to_vec();
+    let args = Words::from_slice(world.facts.args(atom));
     let mut found = Vec::new();
     let mut eval = Eval::new(world, delta);
     if let Some(operator) = code.operators.get(&name) {
@@ -99,11 +99,11 @@ pub(super) fn ways(world: &mut World, list: u32, delta: u32) -> Ways {
 
 /// The method's variables as far as the task's arguments bind them; `None` if the method does not
 /// do this task: one whose variables are of narrower types than the task's is for these only.
-fn head(world: &mut World, method: &Method, args: &[u32]) -> Option<Vec<u32>> {
+fn head(world: &mut World, method: &Method, args: &[u32]) -> Option<Words> {
     if method.head.len() != args.len() {
         return None;
     }
-    let mut bindings = vec![NONE; method.kinds.len()];
+    let mut bindings = Words::from_elem(NONE, method.kinds.len());
     for (term, arg) in method.head.iter().zip(args) {
         match term {
             Arg::Object(object) if object != arg => return None,
@@ -130,7 +130,7 @@ pub(super) fn estimate(world: &mut World, list: u32, delta: u32) -> (u64, Vec<Ke
         left = rest;
         let atom = eval.world.lists.entry(entry).atom;
         let name = eval.world.facts.name(atom);
-        let args = eval.world.facts.args(atom).to_vec();
+        let args = Words::from_slice(eval.world.facts.args(atom));
         let matters = eval.world.lists.reads(rest);
         if let Some(operator) = code.operators.get(&name) {
             if known {
@@ -150,7 +150,7 @@ pub(super) fn estimate(world: &mut World, list: u32, delta: u32) -> (u64, Vec<Ke
             continue;
         };
         let found = eval.solve(&rule.kinds, &rule.given, bind(&args, &rule.kinds));
-        let mut best: Option<(Cost, &Vec<u32>)> = None;
+        let mut best: Option<(Cost, &Words)> = None;
         for bindings in &found {
             let units = eval.number(&rule.value, bindings);
             let cost = units.map_or(Cost::ZERO, Cost::from_units);

@@ -1,10 +1,14 @@
 //! Asking the world after some actions, and remembering what was asked.
 
 use super::code::{Arg, Operator, Shape, Test, Value, Write};
-use super::intern::NONE;
+use super::intern::{NONE, Words};
 use super::key::Key;
 use super::world::World;
 use crate::model::Cost;
+use smallvec::SmallVec;
+
+/// Of most states no more is asked.
+const READS: usize = 16;
 
 /// A state, and what was asked of it.
 ///
@@ -13,7 +17,7 @@ use crate::model::Cost;
 pub(super) struct Eval<'a> {
     pub world: &'a mut World,
     /// Variables and values that differ from the belief, or may, by variable.
-    pub delta: Vec<(u32, u32)>,
+    pub delta: SmallVec<[(u32, u32); 8]>,
     pub reads: Vec<Key>,
     /// Facts of observable predicates that were asked for and did not hold.
     pub wanted: Vec<u32>,
@@ -26,7 +30,7 @@ impl<'a> Eval<'a> {
         Self {
             world,
             delta,
-            reads: Vec::new(),
+            reads: Vec::with_capacity(READS),
             wanted: Vec::new(),
         }
     }
@@ -56,8 +60,8 @@ impl<'a> Eval<'a> {
     }
 
     /// All facts that match `shape` as far as its variables are bound.
-    fn matching(&mut self, shape: &Shape, bindings: &[u32]) -> Vec<u32> {
-        let args: Vec<u32> = shape.args.iter().map(|arg| arg.bound(bindings)).collect();
+    fn matching(&mut self, shape: &Shape, bindings: &[u32]) -> Words {
+        let args: Words = shape.args.iter().map(|arg| arg.bound(bindings)).collect();
         let name = shape.name;
         let class = self.world.class_of(name);
         if class == NONE {
@@ -71,7 +75,7 @@ impl<'a> Eval<'a> {
             let atom = self.value_of(variable);
             let facts = &self.world.facts;
             let fits = atom != NONE && facts.name(atom) == name && agrees(facts.args(atom), &args);
-            return if fits { vec![atom] } else { Vec::new() };
+            return Words::from_iter(fits.then_some(atom));
         }
         let bound = args.iter().position(|arg| *arg != NONE);
         self.reads.push(match bound {
@@ -80,7 +84,7 @@ impl<'a> Eval<'a> {
         });
         let facts = &self.world.facts;
         let candidates = facts.candidates(name, &args).iter().copied();
-        let mut found: Vec<u32> = candidates
+        let mut found: Words = candidates
             .filter(|atom| agrees(facts.args(*atom), &args))
             .collect();
         if !self.delta.is_empty() {
@@ -101,7 +105,7 @@ impl<'a> Eval<'a> {
 
     /// The one variable that a shape is about, if its group's parameters are bound.
     fn variable_of_shape(&mut self, class: u32, name: u32, args: &[u32]) -> Option<u32> {
-        let mut key = vec![class];
+        let mut key = Words::from_elem(class, 1);
         match self.world.parameters(name) {
             Some(parameters) => key.extend(parameters.iter().map(|place| args[*place])),
             None => key.extend_from_slice(args),
@@ -111,9 +115,9 @@ impl<'a> Eval<'a> {
     }
 
     /// All ways to bind variables so that `tests` hold. `kinds`: the types of the variables.
-    pub fn solve(&mut self, kinds: &[u32], tests: &[Test], bindings: Vec<u32>) -> Vec<Vec<u32>> {
+    pub fn solve(&mut self, kinds: &[u32], tests: &[Test], bindings: Words) -> Vec<Words> {
         let mut found = Vec::new();
-        let open: Vec<&Test> = tests.iter().collect();
+        let open: SmallVec<[&Test; 8]> = tests.iter().collect();
         self.go_on(kinds, &open, bindings, &mut found);
         found
     }
@@ -123,10 +127,10 @@ impl<'a> Eval<'a> {
         &mut self,
         kinds: &[u32],
         open: &[&Test],
-        mut bindings: Vec<u32>,
-        found: &mut Vec<Vec<u32>>,
+        mut bindings: Words,
+        found: &mut Vec<Words>,
     ) {
-        let mut undecided = Vec::with_capacity(open.len());
+        let mut undecided: SmallVec<[&Test; 8]> = SmallVec::new();
         for test in open {
             match self.decide(test, &bindings) {
                 Some(true) => {}
@@ -196,8 +200,8 @@ impl<'a> Eval<'a> {
         shape: &Shape,
         atom: u32,
         bindings: &[u32],
-    ) -> Option<Vec<u32>> {
-        let mut bindings = bindings.to_vec();
+    ) -> Option<Words> {
+        let mut bindings = Words::from_slice(bindings);
         for (place, arg) in shape.args.iter().enumerate() {
             let object = self.world.facts.args(atom)[place];
             if let Arg::Variable(index) = arg {
@@ -260,11 +264,11 @@ impl<'a> Eval<'a> {
     /// The state after an action, as far as a kind of variable is in the set `matters`.
     pub fn act(&mut self, operator: &Operator, args: &[u32], matters: u32) {
         let bindings = bind(args, &operator.kinds);
-        let mut removed = Vec::new();
+        let mut removed = Words::new();
         for write in &operator.remove {
             self.written(write, false, &bindings, matters, &mut removed);
         }
-        let mut added = Vec::new();
+        let mut added = Words::new();
         for write in &operator.add {
             self.written(write, true, &bindings, matters, &mut added);
         }
@@ -273,7 +277,7 @@ impl<'a> Eval<'a> {
 
     /// Facts that no longer hold, then facts that do.
     pub fn write(&mut self, removed: &[u32], added: &[u32]) {
-        let mut writes: Vec<(u32, u32)> = Vec::with_capacity(removed.len() + added.len());
+        let mut writes: SmallVec<[(u32, u32); 8]> = SmallVec::new();
         for atom in added {
             writes.push((self.world.variable_of(*atom), *atom));
         }
@@ -306,7 +310,7 @@ impl<'a> Eval<'a> {
         holds: bool,
         bindings: &[u32],
         matters: u32,
-        found: &mut Vec<u32>,
+        found: &mut Words,
     ) {
         let class = self.world.class_of(write.fact.name);
         if !self.world.lists.contains(matters, class) {
@@ -317,14 +321,14 @@ impl<'a> Eval<'a> {
             found.extend(words.map(|words| self.world.facts.atom(&words)));
             return;
         }
-        let mut kinds = vec![NONE; bindings.len()];
-        kinds.extend(&write.over);
-        let mut all = bindings.to_vec();
+        let mut kinds = Words::from_elem(NONE, bindings.len());
+        kinds.extend_from_slice(&write.over);
+        let mut all = Words::from_slice(bindings);
         all.resize(kinds.len(), NONE);
         // Only what holds needs to be removed, which binds the variables faster than their types.
         let fact = Test::Fact(true, write.fact.clone());
         let first = std::iter::once(&fact).filter(|_| !holds);
-        let open: Vec<&Test> = first.chain(&write.when).collect();
+        let open: SmallVec<[&Test; 8]> = first.chain(&write.when).collect();
         let mut solutions = Vec::new();
         let wanted = self.wanted.len();
         self.go_on(&kinds, &open, all, &mut solutions);
@@ -338,7 +342,7 @@ impl<'a> Eval<'a> {
     /// The state in which `facts` hold and no others of their predicates do, as far as a kind of
     /// variable is in the set `matters`.
     pub fn establish(&mut self, facts: &[Shape], bindings: &[u32], matters: u32) {
-        let (mut removed, mut added) = (Vec::new(), Vec::new());
+        let (mut removed, mut added) = (Words::new(), Words::new());
         for shape in facts {
             if !self
                 .world
@@ -361,7 +365,7 @@ impl<'a> Eval<'a> {
     /// The number of the delta, of what is in the set `matters` alone.
     pub fn projected(&mut self, matters: u32) -> u32 {
         let world = &mut *self.world;
-        let mut words = Vec::with_capacity(2 * self.delta.len());
+        let mut words = Words::new();
         for (variable, value) in &self.delta {
             if world.lists.contains(matters, world.class(*variable)) {
                 words.extend([*variable, *value]);
@@ -375,18 +379,18 @@ impl<'a> Eval<'a> {
 ///
 /// A quantifier is only decided when all that it speaks of is bound, so that variables which are
 /// still free are of no interest within it.
-fn within(over: &[u32], outer: &[u32]) -> (Vec<u32>, Vec<u32>) {
-    let mut kinds = vec![NONE; outer.len()];
-    kinds.extend(over);
+fn within(over: &[u32], outer: &[u32]) -> (Words, Words) {
+    let mut kinds = Words::from_elem(NONE, outer.len());
+    kinds.extend_from_slice(over);
     let some = |object: &u32| if *object == NONE { 0 } else { *object };
-    let mut bindings: Vec<u32> = outer.iter().map(some).collect();
+    let mut bindings: Words = outer.iter().map(some).collect();
     bindings.resize(kinds.len(), NONE);
     (kinds, bindings)
 }
 
 /// Name and arguments, if every variable is bound.
-pub(super) fn ground(shape: &Shape, bindings: &[u32]) -> Option<Vec<u32>> {
-    let mut words = Vec::with_capacity(shape.args.len() + 1);
+pub(super) fn ground(shape: &Shape, bindings: &[u32]) -> Option<Words> {
+    let mut words = Words::new();
     words.push(shape.name);
     for arg in &shape.args {
         match arg.bound(bindings) {
@@ -398,8 +402,8 @@ pub(super) fn ground(shape: &Shape, bindings: &[u32]) -> Option<Vec<u32>> {
 }
 
 /// The arguments of an atom as bindings of the variables of its declaration.
-pub(super) fn bind(args: &[u32], kinds: &[u32]) -> Vec<u32> {
-    let mut bindings = args.to_vec();
+pub(super) fn bind(args: &[u32], kinds: &[u32]) -> Words {
+    let mut bindings = Words::from_slice(args);
     bindings.resize(kinds.len().max(args.len()), NONE);
     bindings
 }

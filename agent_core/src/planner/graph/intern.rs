@@ -4,11 +4,16 @@ use std::hash::BuildHasher;
 
 use hashbrown::HashTable;
 use rustc_hash::FxBuildHasher;
+use smallvec::SmallVec;
 
 use crate::model::Symbol;
 
 /// A hash table whose order is the same in every run.
 pub(super) type Map<K, V> = hashbrown::HashMap<K, V, FxBuildHasher>;
+
+/// A few numbers: what is bound, an atom's words. Hardly ever so many that they need a place of their
+/// own in memory, which takes longer than all that is done with them.
+pub(super) type Words = SmallVec<[u32; 8]>;
 
 /// No number: an unbound variable, a fact of nobody, an empty place.
 pub(super) const NONE: u32 = u32::MAX;
@@ -37,16 +42,17 @@ impl Slices {
 
     /// The number of a sequence.
     pub fn intern(&mut self, words: &[u32]) -> u32 {
-        if let Some(id) = self.find(words) {
-            return id;
+        let hash = FxBuildHasher.hash_one(words);
+        let same = |id: &u32| slice(&self.ends, &self.words, *id) == words;
+        if let Some(id) = self.table.find(hash, same) {
+            return *id;
         }
         let id = self.ends.len() as u32;
         self.words.extend_from_slice(words);
         self.ends.push(self.words.len() as u32);
         let (ends, all) = (&self.ends, &self.words);
         let rehash = |id: &u32| FxBuildHasher.hash_one(slice(ends, all, *id));
-        self.table
-            .insert_unique(FxBuildHasher.hash_one(words), id, rehash);
+        self.table.insert_unique(hash, id, rehash);
         id
     }
 }

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
 use super::decompose::{self, Way};
-use super::intern::{Map, Slices};
+use super::intern::{Map, Slices, Words};
 use super::key::{Key, Touched};
 use super::lists::NIL;
 use super::world::World;
@@ -283,7 +283,7 @@ impl Graph {
 
     pub fn note_shape(&mut self, list: u32, delta: u32) {
         let pairs = self.world.deltas.get(delta).chunks_exact(2);
-        let variables: Vec<u32> = pairs.map(|pair| pair[0]).collect();
+        let variables: Words = pairs.map(|pair| pair[0]).collect();
         let shape = self.shapes.intern(&variables);
         let shapes = self.shapes_of.entry(list).or_default();
         if !shapes.contains(&shape) {

@@ -6,12 +6,13 @@ use std::sync::Arc;
 use super::code::Code;
 use super::facts::{Facts, Source};
 use super::groups::Members;
-use super::intern::{Map, NONE, Names, Slices};
+use super::intern::{Map, NONE, Names, Slices, Words};
 use super::key::{Key, Touched};
 use super::lists::{Lists, NIL};
 use super::reading::Reading;
 use crate::model::{Action, Atom, Belief, Domain, ExecutionModel, FactChange, Symbol};
 use crate::planner::{Item, Problem, TaskList};
+use smallvec::SmallVec;
 
 /// What there is to be known, and names for all that is made of it.
 #[derive(Clone, Debug)]
@@ -184,7 +185,7 @@ impl World {
 
     /// The number of an atom.
     pub fn atom(&mut self, atom: &Atom) -> u32 {
-        let mut words = vec![self.names.number(&atom.name)];
+        let mut words = Words::from_elem(self.names.number(&atom.name), 1);
         words.extend(atom.args.iter().map(|arg| self.names.number(arg)));
         self.facts.atom(&words)
     }
@@ -236,7 +237,7 @@ impl World {
         }
         let words = self.facts.words(atom);
         let class = self.class_of(words[0]);
-        let mut key = vec![class];
+        let mut key = Words::from_elem(class, 1);
         match self.parameters(words[0]) {
             Some(parameters) => key.extend(parameters.iter().map(|place| words[place + 1])),
             None => key.extend_from_slice(&words[1..]),
@@ -464,7 +465,7 @@ impl World {
 
     /// The number of a list of tasks.
     pub fn list(&mut self, tasks: &TaskList) -> u32 {
-        let items: Vec<&Item> = tasks.items().collect();
+        let items: SmallVec<[&Item; 16]> = tasks.items().collect();
         items.into_iter().rev().fold(NIL, |rest, item| {
             let entry = self.entry(item);
             self.prepend(entry, rest)
@@ -481,7 +482,7 @@ impl World {
     /// The delta of these variables as they are now.
     pub fn realised(&self, variables: &[u32]) -> Option<u32> {
         let pairs = variables.iter().flat_map(|v| [*v, self.value(*v)]);
-        self.deltas.find(&pairs.collect::<Vec<u32>>())
+        self.deltas.find(&pairs.collect::<Words>())
     }
 
     /// Whether a delta says something of a variable.
