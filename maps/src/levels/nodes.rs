@@ -31,22 +31,35 @@ pub fn area_maps(site: &Site) -> BTreeMap<Symbol, Map> {
         .collect()
 }
 
-/// The maps of all areas of a site, each made when it is asked for.
+/// With so many areas all maps are made at once, which takes a few milliseconds.
+const FEW: usize = 100;
+
+/// The maps of all areas of a site: made beforehand if they are few, as to make one takes longer than
+/// everything else that a robot waits for between two actions; of many, each when it is asked for.
 #[derive(Clone, Debug)]
 pub struct AreaMaps {
     site: Arc<Site>,
+    made: Arc<BTreeMap<Symbol, Map>>,
 }
 
 impl AreaMaps {
     /// Those of this site.
     pub fn of(site: Arc<Site>) -> Self {
-        Self { site }
+        let made = match site.areas().nth(FEW) {
+            None => area_maps(&site),
+            Some(_) => BTreeMap::new(),
+        };
+        Self {
+            site,
+            made: Arc::new(made),
+        }
     }
 }
 
 impl MapsBelow for AreaMaps {
     fn map_of(&self, place: &Symbol) -> Option<Map> {
-        node_level(&self.site, place.as_str())
+        let made = self.made.get(place).cloned();
+        made.or_else(|| node_level(&self.site, place.as_str()))
     }
 }
 
