@@ -1,5 +1,7 @@
 //! What the graph can tell without being changed.
 
+use std::borrow::Cow;
+
 use super::intern::Map;
 use super::lists::NIL;
 use super::nodes::Graph;
@@ -12,17 +14,27 @@ use crate::planner::{Agenda, Plan, Problem};
 
 impl GraphPlanner {
     /// The best way that is known for each agenda; see [`Planner::known`](super::Planner::known).
-    pub(super) fn best_known(&self, problem: &Problem, agendas: &[Agenda]) -> Vec<Plan> {
+    pub(super) fn best_known<'a>(&'a self, problem: &Problem, agendas: &[Agenda]) -> Vec<Plan> {
         let here = |graph: &&Graph| {
             let world = &graph.world;
             same_one(&world.map, &problem.map)
                 && same_one(&world.domain, &problem.domain)
                 && same_one(&world.model, &problem.model)
-                && world.knows(&problem.belief)
         };
-        let Some(graph) = self.graphs.iter().find(here) else {
+        // Of one that is behind, a copy is told, as nothing is to be changed.
+        let told = |graph: &'a Graph| match graph.behind.is_empty() {
+            true => Cow::Borrowed(graph),
+            false => {
+                let mut graph = graph.clone();
+                graph.catch_up();
+                Cow::Owned(graph)
+            }
+        };
+        let knows = |graph: &Cow<'_, Graph>| graph.world.knows(&problem.belief);
+        let Some(graph) = self.graphs.iter().filter(here).map(told).find(knows) else {
             return Vec::new();
         };
+        let graph: &Graph = &graph;
         // The plans are shown, and forgotten again: their frames need no numbers of their own.
         let mut next_frame = self.next_frame;
         let mut replay = Replay::default();

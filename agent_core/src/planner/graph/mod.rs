@@ -8,6 +8,7 @@
 //! them. Goals that are suspended are further roots of the same graph.
 
 mod alternatives;
+mod behind;
 mod code;
 mod collect;
 mod confirm;
@@ -160,6 +161,7 @@ impl GraphPlanner {
         let Some(graph) = self.graphs.last_mut() else {
             return;
         };
+        graph.catch_up();
         let mut touched = Touched::default();
         if !graph.world.knows(&problem.belief) {
             graph.world.become_like(&problem.belief, &mut touched);
@@ -425,11 +427,7 @@ impl Planner for GraphPlanner {
     }
 
     fn observe(&mut self, changes: &[FactChange]) {
-        for graph in &mut self.graphs {
-            let mut touched = Touched::default();
-            graph.world.apply(changes, &mut touched);
-            graph.touched(&touched);
-        }
+        self.tell(changes);
     }
 }
 

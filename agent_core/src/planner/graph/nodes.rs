@@ -3,6 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
+use super::behind::Behind;
 use super::decompose::{self, Way};
 use super::intern::{Map, Slices, Words};
 use super::key::{Key, Touched};
@@ -132,6 +133,8 @@ pub(super) struct Graph {
     /// What was forgotten at once, and is given back bit by bit.
     old_nodes: Vec<Node>,
     old_subscriptions: Vec<Vec<Subscription>>,
+    /// What it was not told yet.
+    pub behind: Behind,
 }
 
 impl Graph {
@@ -156,6 +159,7 @@ impl Graph {
             least_to_begin_anew,
             old_nodes: Vec::new(),
             old_subscriptions: Vec::new(),
+            behind: Behind::default(),
         }
     }
 
