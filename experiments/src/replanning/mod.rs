@@ -210,7 +210,8 @@ fn figures(rows: &[Row]) -> Table {
     table
 }
 
-const COLUMNS: [&str; 13] = [
+/// The columns of `replanning.csv`, and of others after their own.
+pub(crate) const COLUMNS: [&str; 13] = [
     "row",
     "start",
     "goal",

@@ -9,7 +9,7 @@ use agent_core::protocol::Resumption;
 use maps::{Site, scaled_map};
 
 use crate::drive::{Drive, Ground, Sample, Situation, interrupt};
-use crate::replanning::{LEVELS, PLANNERS, cells, spent, undisturbed, us};
+use crate::replanning::{COLUMNS, LEVELS, PLANNERS, cells, spent, undisturbed, us};
 use crate::{Cell, Chart, ExperimentError, Line, Onlooker, Report, Summary, Table};
 use situations::situations;
 
@@ -202,22 +202,7 @@ fn figures(measured: &[Measured]) -> Table {
     let mut table = Table::new(
         "scaling",
         "Time to resume the tour",
-        [
-            "nodes",
-            "row",
-            "start",
-            "goal",
-            "interruption",
-            "emergency",
-            "level",
-            "planner",
-            "median_us",
-            "p10_us",
-            "p90_us",
-            "upkeep_us",
-            "expanded",
-            "evaluated",
-        ],
+        ["nodes"].into_iter().chain(COLUMNS),
     );
     for one in measured {
         for (level, level_name) in LEVELS.into_iter().enumerate() {
