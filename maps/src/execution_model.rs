@@ -7,8 +7,8 @@ use agent_core::language::{
     parse_parameter, parse_pattern,
 };
 use agent_core::model::{
-    ActionModel, Clause, CostRule, Domain, ExecutionModel, Number, Parameter, Pattern, Projection,
-    Suspension, Symbol, TaskModel,
+    ActionModel, Arising, Clause, CostRule, Domain, ExecutionModel, Number, Parameter, Pattern,
+    Projection, Suspension, Symbol, TaskModel,
 };
 use serde::Deserialize;
 use toml::{Spanned, Value};
@@ -29,6 +29,12 @@ struct ModelEntry {
     task: BTreeMap<Text, TaskEntry>,
     #[serde(default)]
     projection: Vec<Spanned<ProjectionEntry>>,
+    #[serde(default)]
+    shared: Vec<Text>,
+    #[serde(default)]
+    asked: Vec<Text>,
+    #[serde(default)]
+    arising: Vec<Spanned<ArisingEntry>>,
 }
 
 #[derive(Deserialize)]
@@ -40,6 +46,10 @@ struct ActionEntry {
     achieves_state: Option<bool>,
     #[serde(default)]
     protected: Vec<Text>,
+    #[serde(default)]
+    goal_states: Vec<Text>,
+    #[serde(default)]
+    resources: Vec<String>,
     suspension: Option<SuspensionEntry>,
     perform: Option<Text>,
     map_of: Option<Text>,
@@ -85,6 +95,15 @@ struct ProjectionEntry {
     variables: Vec<Text>,
     when: Vec<Text>,
     then: Text,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ArisingEntry {
+    #[serde(default)]
+    variables: Vec<Text>,
+    when: Vec<Text>,
+    task: Text,
 }
 
 /// Reads an execution model and checks it against its domain.
@@ -134,6 +153,13 @@ pub(crate) fn place_of(text: &str, at: usize) -> (usize, usize) {
     let line = before.matches('\n').count() + 1;
     let column = before[line_start..].chars().count() + 1;
     (line, column)
+}
+
+fn lower_case(names: &[String]) -> Vec<Symbol> {
+    let names = names.iter();
+    names
+        .map(|name| Symbol::from(name.to_lowercase()))
+        .collect()
 }
 
 /// Reads entry by entry; what cannot be read is a finding and is left out.
@@ -190,12 +216,12 @@ impl Reader<'_> {
     }
 
     fn model(&mut self, entry: ModelEntry, domain: &Domain) -> ExecutionModel {
-        let mut model = ExecutionModel::default();
-        for predicate in entry.observable {
-            let name = Symbol::from(predicate.get_ref().to_lowercase());
-            self.remember("observable", predicate.span().start);
-            model.observable.push(name);
-        }
+        let mut model = ExecutionModel {
+            observable: self.names("observable", entry.observable),
+            shared: self.names("shared", entry.shared),
+            asked: self.names("asked", entry.asked),
+            ..ExecutionModel::default()
+        };
         for (name, action) in entry.action {
             let symbol = Symbol::from(name.get_ref().to_lowercase());
             let key = format!("action.{symbol}");
@@ -234,7 +260,22 @@ impl Reader<'_> {
                 .projections
                 .extend(self.projection(&key, projection.get_ref()));
         }
+        for (index, arising) in entry.arising.into_iter().enumerate() {
+            let key = format!("arising.{}", index + 1);
+            self.remember(&key, arising.span().start);
+            model.arising.extend(self.arising(&key, arising.get_ref()));
+        }
         model
+    }
+
+    fn names(&mut self, key: &str, texts: Vec<Text>) -> Vec<Symbol> {
+        if let Some(first) = texts.first() {
+            self.remember(key, first.span().start);
+        }
+        let names = texts.into_iter();
+        names
+            .map(|text| Symbol::from(text.get_ref().to_lowercase()))
+            .collect()
     }
 
     fn unknown(&mut self, key: &str, name: &Text, what: &str, near: Option<&str>) {
@@ -271,6 +312,8 @@ impl Reader<'_> {
             repeatable: entry.repeatable.unwrap_or(fallback.repeatable),
             achieves_state: entry.achieves_state.unwrap_or(fallback.achieves_state),
             protected: self.literals(&sub("protected"), &entry.protected, parameters),
+            goal_states: self.literals(&sub("goal_states"), &entry.goal_states, parameters),
+            resources: lower_case(&entry.resources),
             suspension,
             perform: entry
                 .perform
@@ -351,6 +394,16 @@ impl Reader<'_> {
         Some(Projection {
             when: self.literals(&sub("when"), &entry.when, &parameters),
             then: self.pattern(&sub("then"), &entry.then, &parameters)?,
+            parameters,
+        })
+    }
+
+    fn arising(&mut self, key: &str, entry: &ArisingEntry) -> Option<Arising> {
+        let sub = |part: &str| format!("{key}.{part}");
+        let parameters = self.variables(&sub("variables"), &entry.variables, &[]);
+        Some(Arising {
+            when: self.literals(&sub("when"), &entry.when, &parameters),
+            task: self.pattern(&sub("task"), &entry.task, &parameters)?,
             parameters,
         })
     }

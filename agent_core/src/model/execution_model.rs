@@ -16,6 +16,14 @@ pub struct ExecutionModel {
     pub observable: Vec<Symbol>,
     /// How facts of this level look one level up.
     pub projections: Vec<Projection>,
+    /// Predicates about what all vehicles of a team share: a change is told to the others. All other
+    /// facts are an agent's own, such as where it is.
+    pub shared: Vec<Symbol>,
+    /// Predicates of which what nobody has told is unknown, not false: whoever needs such a fact
+    /// asks for it.
+    pub asked: Vec<Symbol>,
+    /// Tasks that come up by themselves when something becomes so.
+    pub arising: Vec<Arising>,
 }
 
 /// What an action is to whoever executes it. Variables are the operator's parameters.
@@ -33,6 +41,12 @@ pub struct ActionModel {
     pub achieves_state: bool,
     /// What must hold as long as it runs.
     pub protected: Vec<Clause>,
+    /// What must be confirmed by sensors before it counts as done, within its time-out. Empty: the
+    /// executor's word is enough.
+    pub goal_states: Vec<Clause>,
+    /// What it needs for itself alone as long as it runs, such as `arm` or `base`, for agents that do
+    /// several things at once.
+    pub resources: Vec<Symbol>,
     /// How it is suspended. `None`: it cannot be, and runs to its end.
     pub suspension: Option<Suspension>,
     /// What the robot is to do, in the executor's own words: `(drive ?arc ?to)`. Only for actions
@@ -53,6 +67,8 @@ impl Default for ActionModel {
             repeatable: true,
             achieves_state: false,
             protected: Vec::new(),
+            goal_states: Vec::new(),
+            resources: Vec::new(),
             suspension: None,
             perform: None,
             map_of: None,
@@ -112,4 +128,16 @@ pub struct Projection {
     pub when: Condition,
     /// In the words of the level above.
     pub then: Pattern,
+}
+
+/// A task that comes up whenever `when` becomes so: a guest has arrived and is to be shown to a table.
+/// Once for each way in which it becomes so.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arising {
+    /// The variables of the rule.
+    pub parameters: Vec<Parameter>,
+    /// In this level's words.
+    pub when: Condition,
+    /// What is to be done then.
+    pub task: Pattern,
 }

@@ -17,7 +17,7 @@ pub use atom::{Action, Atom, Fact, Task};
 pub use belief::{Belief, FactChange};
 pub use domain::{Domain, Method, Operator};
 pub use execution_model::{
-    ActionModel, CostRule, ExecutionModel, Projection, Suspension, TaskModel,
+    ActionModel, Arising, CostRule, ExecutionModel, Projection, Suspension, TaskModel,
 };
 pub use expression::{Change, Clause, Condition, Effect, Number, Parameter, Pattern, Term};
 pub use instance::Instance;

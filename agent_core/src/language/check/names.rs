@@ -36,6 +36,29 @@ pub(super) fn check_names(domain: &Domain, model: &ExecutionModel, errors: &mut 
             None => place.undeclared("observable", Sort::Predicate, predicate),
         }
     }
+    for (key, predicates) in [("shared", &model.shared), ("asked", &model.asked)] {
+        for predicate in predicates {
+            if !domain.predicates.contains_key(predicate) {
+                Place::new(domain, predicate, nothing, errors).undeclared(
+                    key,
+                    Sort::Predicate,
+                    predicate,
+                );
+            }
+        }
+    }
+    for (index, arising) in model.arising.iter().enumerate() {
+        let name = Symbol::from(format!("arising.{}", index + 1));
+        let mut place = Place::new(domain, &name, &arising.parameters, errors);
+        place.types(&format!("{name}.variables"), &arising.parameters);
+        place.condition(&format!("{name}.when"), &arising.when);
+        place.pattern(
+            &format!("{name}.task"),
+            Sort::Step,
+            &arising.task,
+            Closeness::Possible,
+        );
+    }
     for (index, projection) in model.projections.iter().enumerate() {
         let name = Symbol::from(format!("projection.{}", index + 1));
         let mut place = Place::new(domain, &name, &projection.parameters, errors);
@@ -70,7 +93,8 @@ impl<'a> Place<'a> {
 
     fn action(&mut self, action: &ActionModel) {
         let key = |rest: &str| format!("action.{}.{rest}", self.subject);
-        let [duration, timeout, protected] = ["duration_s", "timeout_s", "protected"].map(key);
+        let [duration, timeout, protected, goal_states] =
+            ["duration_s", "timeout_s", "protected", "goal_states"].map(key);
         let suspension_keys = ["effect", "resume", "rollback", "reach"]
             .map(|rest| key(&format!("suspension.{rest}")));
         let cost_keys = ["cost.variables", "cost.given", "cost.cost"].map(key);
@@ -81,6 +105,7 @@ impl<'a> Place<'a> {
             self.number(&timeout, number);
         }
         self.condition(&protected, &action.protected);
+        self.condition(&goal_states, &action.goal_states);
         for rule in &action.costs {
             let mut place = Place::new(self.domain, self.subject, &rule.parameters, self.errors);
             let [variables, given, cost] = &cost_keys;
