@@ -8,6 +8,7 @@ mod fingerprint;
 mod levels;
 pub mod museum;
 mod place;
+pub mod restaurant;
 mod rmf;
 mod scaled;
 mod site;
