@@ -17,6 +17,8 @@ pub(crate) struct Board {
     seq: u64,
     /// The last word about each fact, and about each value (`true`).
     last: BTreeMap<(bool, Fact), FactChange>,
+    /// What was told each superior alone when that was done last.
+    alone: BTreeMap<Symbol, Vec<FactChange>>,
 }
 
 impl Board {
@@ -25,6 +27,7 @@ impl Board {
             epoch,
             seq: 0,
             last: BTreeMap::new(),
+            alone: BTreeMap::new(),
         }
     }
 
@@ -41,10 +44,26 @@ impl Board {
         Observed::new(self.epoch, self.seq, facts, reported_to)
     }
 
+    /// The same for all that can be told one superior alone now.
+    pub(crate) fn tell_one(
+        &mut self,
+        to: &Symbol,
+        facts: Vec<FactChange>,
+        reported: bool,
+    ) -> Observed {
+        self.seq += 1;
+        let message = Observed::new(self.epoch, self.seq, &[], reported.then_some(to));
+        let message = message.with_alone(to, &facts);
+        self.alone.insert(to.clone(), facts);
+        message
+    }
+
     /// All that has been told.
     pub(crate) fn all(&self) -> Observed {
         let facts: Vec<FactChange> = self.last.values().cloned().collect();
-        Observed::new(self.epoch, self.seq, &facts, None)
+        let all = Observed::new(self.epoch, self.seq, &facts, None);
+        let alone = self.alone.iter();
+        alone.fold(all, |all, (to, facts)| all.with_alone(to, facts))
     }
 }
 
@@ -83,17 +102,25 @@ impl Reader {
             // The report comes by itself, and in order with what follows it.
             return Reading::Ignore;
         }
-        Reading::Take(message.into_facts())
+        take(message, own)
     }
 
-    /// Takes the answer to the question for all.
-    pub(crate) fn all(&mut self, message: Observed) -> Reading {
+    /// Takes the answer to the question for all, as `own`.
+    pub(crate) fn all(&mut self, message: Observed, own: &str) -> Reading {
         let at = (message.epoch, message.seq);
         if message.seq == 0 || self.last.is_some_and(|last| at <= last) {
             return Reading::Ignore;
         }
         self.last = Some(at);
-        Reading::Take(message.into_facts())
+        take(message, own)
+    }
+}
+
+fn take(message: Observed, own: &str) -> Reading {
+    match message.into_facts(own) {
+        // It was for somebody else.
+        facts if facts.is_empty() => Reading::Ignore,
+        facts => Reading::Take(facts),
     }
 }
 
@@ -123,12 +150,12 @@ mod tests {
         let _lost = board.tell(&[not_at("n1"), at("n2")], None);
         let third = board.tell(&[FactChange::Set(Atom::new("charge", []), 0.5)], None);
         assert_eq!(reader.published(third, "child"), Reading::Missed);
-        let Reading::Take(all) = reader.all(board.all()) else {
+        let Reading::Take(all) = reader.all(board.all(), "child") else {
             unreachable!("the answer is newer than what is known")
         };
         assert_eq!(all.len(), 3);
         assert!(all.contains(&not_at("n1")) && all.contains(&at("n2")));
-        assert_eq!(reader.all(board.all()), Reading::Ignore);
+        assert_eq!(reader.all(board.all(), "child"), Reading::Ignore);
         let fourth = board.tell(&[at("n3")], None);
         assert_eq!(
             reader.published(fourth, "child"),
@@ -150,6 +177,25 @@ mod tests {
     }
 
     #[test]
+    fn what_is_for_one_superior_alone_no_other_hears_and_none_misses() {
+        let mut board = Board::new(7);
+        let (mut k2, mut k3) = (Reader::default(), Reader::default());
+        let of_k3 = board.tell_one(&"k3".into(), vec![at("n1")], false);
+        assert_eq!(k2.published(of_k3.clone(), "k2"), Reading::Ignore);
+        assert_eq!(k3.published(of_k3, "k3"), Reading::Take(vec![at("n1")]));
+        let of_k2 = board.tell_one(&"k2".into(), vec![at("n2")], false);
+        assert_eq!(k2.published(of_k2, "k2"), Reading::Take(vec![at("n2")]));
+        let in_a_report = board.tell_one(&"k2".into(), vec![not_at("n2")], true);
+        assert_eq!(k2.published(in_a_report, "k2"), Reading::Ignore);
+        let _lost = board.tell_one(&"k2".into(), vec![at("n3")], false);
+        let of_all = board.tell(&[at("n9")], None);
+        assert_eq!(k2.published(of_all, "k2"), Reading::Missed);
+        // What was seen before is not said again: it may be so no more.
+        let all = Reading::Take(vec![at("n9"), at("n3")]);
+        assert_eq!(k2.all(board.all(), "k2"), all);
+    }
+
+    #[test]
     fn an_agent_that_starts_anew_is_followed_and_its_former_self_is_not() {
         let mut reader = Reader::default();
         let mut before = Board::new(7);
@@ -160,6 +206,9 @@ mod tests {
         let reading = reader.published(before.tell(&[at("n3")], None), "child");
         assert_eq!(reading, Reading::Ignore);
         // A board that has nothing on it says nothing.
-        assert_eq!(Reader::default().all(Board::new(9).all()), Reading::Ignore);
+        assert_eq!(
+            Reader::default().all(Board::new(9).all(), "child"),
+            Reading::Ignore
+        );
     }
 }

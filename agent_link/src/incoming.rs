@@ -225,7 +225,7 @@ impl Link {
         };
         let reader = self.readers.entry(executor.clone()).or_default();
         let reading = if all {
-            reader.all(message)
+            reader.all(message, &self.wiring.name)
         } else {
             reader.published(message, &self.wiring.name)
         };

@@ -180,6 +180,15 @@ impl Link {
                 let key = self.wiring.keys.agent(&self.wiring.name)?.facts();
                 self.publisher.urgent(key, wire::write(&message)?);
             }
+            Effect::Seen {
+                to,
+                facts,
+                reported,
+            } => {
+                let message = self.board.tell_one(&to, facts, reported);
+                let key = self.wiring.keys.agent(&self.wiring.name)?.facts();
+                self.publisher.urgent(key, wire::write(&message)?);
+            }
             Effect::Event { number, event } => {
                 let number = EventNumber { line, n: number };
                 let line = wire::numbered_event_to_line(&self.wiring.name, Some(number), &event)?;

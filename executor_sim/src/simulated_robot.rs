@@ -81,6 +81,8 @@ impl SimulatedRobot {
                         self.outputs
                             .push_back(Output::Observed { facts, reported_to });
                     }
+                    // The robot of one superior keeps nothing from others.
+                    Output::Seen { .. } => {}
                     Output::Event(event) => self.outputs.push_back(Output::Event(event)),
                 }
             }

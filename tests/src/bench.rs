@@ -85,7 +85,7 @@ impl Bench {
                     self.reported.push(format!("#{} {what}", id.number));
                 }
                 Output::Event(event) => self.events.push(event),
-                Output::Observed { .. } => {}
+                Output::Observed { .. } | Output::Seen { .. } => {}
                 Output::Local(never) => match never {},
             }
         }

@@ -191,7 +191,7 @@ impl<P: Planner> Rig<P> {
             match output {
                 Output::Instruct { instruction, .. } => self.instructed(instruction),
                 Output::Event(event) => self.happened.push(event.what),
-                Output::Report { .. } | Output::Observed { .. } => {}
+                Output::Report { .. } | Output::Observed { .. } | Output::Seen { .. } => {}
                 Output::Local(never) => match never {},
             }
         }

@@ -217,6 +217,15 @@ impl Stack {
                         }
                     }
                 }
+                Output::Seen {
+                    to,
+                    facts,
+                    reported,
+                } => {
+                    if !reported {
+                        self.send(&from, &to, "facts", Heard::Facts(facts));
+                    }
+                }
                 Output::Event(event) => self.events.push((from.clone(), event)),
                 Output::Local(never) => match never {},
             }

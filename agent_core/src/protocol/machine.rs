@@ -85,6 +85,16 @@ pub enum Output<L> {
         /// Who needs no telling.
         reported_to: Option<Symbol>,
     },
+    /// To one superior alone: all that can be told it now, so that what was seen before counts no
+    /// more. An executor that is the body of several tells each of them of its own.
+    Seen {
+        /// Which superior.
+        to: Symbol,
+        /// What is true now, at its level.
+        facts: Vec<FactChange>,
+        /// Whether it has them in a report already and needs no telling.
+        reported: bool,
+    },
     /// To people, logs and experiments.
     Event(Event),
     /// To elsewhere.

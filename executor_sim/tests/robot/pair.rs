@@ -128,7 +128,10 @@ impl Pair {
                 Effect::Report { message, .. } => self.reported(message),
                 Effect::Observed { facts, .. } => self.observed.extend(facts),
                 Effect::Respond { to, response, .. } => self.responded(to, response),
-                Effect::Event { .. } | Effect::Instruct { .. } | Effect::StopAhead { .. } => {}
+                Effect::Event { .. }
+                | Effect::Seen { .. }
+                | Effect::Instruct { .. }
+                | Effect::StopAhead { .. } => {}
             }
         }
         assert!(

@@ -219,6 +219,7 @@ impl Rig {
                     }
                     self.observed.push((self.now, facts, reported_to));
                 }
+                Output::Seen { to, .. } => unreachable!("a robot of one has no secrets for {to}"),
                 Output::Event(event) => self.events.push(event),
                 Output::Instruct { to, .. } => unreachable!("a robot instructs nobody, not {to}"),
             }

@@ -283,7 +283,8 @@ impl Drive {
                         self.send(who, above(who), Message::Facts(facts));
                     }
                 }
-                Output::Event(_) => {}
+                // Nobody here is the body of several.
+                Output::Seen { .. } | Output::Event(_) => {}
                 Output::Local(never) => match never {},
             }
         }

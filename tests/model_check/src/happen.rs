@@ -262,7 +262,7 @@ fn told<M: Role>(node: &mut Node<M>, effects: Vec<Effect<M::Out, Way>>, said: &m
                 said.push(responded(M::SIDE.other(), to, response, line));
                 continue;
             }
-            Effect::Observed { .. } | Effect::Event { .. } => continue,
+            Effect::Observed { .. } | Effect::Seen { .. } | Effect::Event { .. } => continue,
         };
         node.queue.push_back(letter.clone());
         // The others follow when it is answered.

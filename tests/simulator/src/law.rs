@@ -254,6 +254,7 @@ impl Law {
             Effect::Event { .. }
             | Effect::Local(_)
             | Effect::Observed { .. }
+            | Effect::Seen { .. }
             | Effect::Respond { .. } => {}
         }
     }

@@ -220,6 +220,15 @@ fn of_agent(effect: Effect<std::convert::Infallible, Way>) -> AnyEffect {
         Effect::Report { to, message } => Effect::Report { to, message },
         Effect::Local(Envelope { body, .. }) => match body {},
         Effect::Observed { facts, reported_to } => Effect::Observed { facts, reported_to },
+        Effect::Seen {
+            to,
+            facts,
+            reported,
+        } => Effect::Seen {
+            to,
+            facts,
+            reported,
+        },
         Effect::Event { number, event } => Effect::Event { number, event },
         Effect::Respond { to, response, line } => Effect::Respond { to, response, line },
     }

@@ -98,7 +98,7 @@ impl History {
                     }
                     _ => {}
                 },
-                Output::Observed { .. } | Output::Event(_) => {}
+                Output::Observed { .. } | Output::Seen { .. } | Output::Event(_) => {}
                 Output::Local(never) => match *never {},
             }
         }

@@ -51,7 +51,7 @@ impl Rig {
                 }
                 Output::Report { id, report, .. } => self.reports.push((id, report)),
                 Output::Event(event) => self.events.push(event),
-                Output::Observed { .. } => {}
+                Output::Observed { .. } | Output::Seen { .. } => {}
                 Output::Local(never) => match never {},
             }
         }

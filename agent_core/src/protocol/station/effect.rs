@@ -84,6 +84,15 @@ pub enum Effect<O, T> {
         /// Who needs no telling.
         reported_to: Option<Symbol>,
     },
+    /// To one superior alone.
+    Seen {
+        /// Which superior.
+        to: Symbol,
+        /// All that can be told it now, at its level.
+        facts: Vec<FactChange>,
+        /// Whether it needs no telling.
+        reported: bool,
+    },
     /// To people, logs and experiments.
     Event {
         /// Counts the events of this machine, also over restarts: one that is told twice has the

@@ -17,6 +17,7 @@ const EPOCH: &str = "s/epoch";
 const NEXT_EVENT: &str = "s/next-event";
 const EVENT: &str = "s/event/";
 const OBSERVED: &str = "s/observed/";
+const SEEN: &str = "s/seen/";
 const NEIGHBOUR: &str = "s/neighbour/";
 const INSTRUCTIONS_IN: &str = "s/in/instruction/";
 const REPORTS_IN: &str = "s/in/report/";
@@ -72,6 +73,14 @@ where
             station
                 .ready
                 .push_back(Effect::Observed { facts, reported_to });
+        }
+        for row in read_rows(rows, SEEN) {
+            let (_, (to, facts, reported)) = row?;
+            station.ready.push_back(Effect::Seen {
+                to,
+                facts,
+                reported,
+            });
         }
         for row in read_rows(rows, NEIGHBOUR) {
             let (neighbour, line) = row?;
@@ -145,15 +154,31 @@ where
         }
         // It goes out once this is written, unless the process dies just then.
         let mut keys = BTreeSet::new();
+        let mut seen = BTreeSet::new();
         for (_, effect) in &self.held {
-            if let Effect::Observed { facts, reported_to } = effect {
-                let key = format!("{OBSERVED}{:020}", keys.len());
-                ledger.put(key.clone(), &(facts, reported_to));
-                keys.insert(key);
+            match effect {
+                Effect::Observed { facts, reported_to } => {
+                    let key = format!("{OBSERVED}{:020}", keys.len());
+                    ledger.put(key.clone(), &(facts, reported_to));
+                    keys.insert(key);
+                }
+                Effect::Seen {
+                    to,
+                    facts,
+                    reported,
+                } => {
+                    let key = format!("{SEEN}{:020}", seen.len());
+                    ledger.put(key.clone(), &(to, facts, reported));
+                    seen.insert(key);
+                }
+                _ => {}
             }
         }
         if renew(&mut noted.observed, Some(keys.len())) || !keys.is_empty() {
             ledger.keep_only(OBSERVED, &keys);
+        }
+        if renew(&mut noted.seen, Some(seen.len())) || !seen.is_empty() {
+            ledger.keep_only(SEEN, &seen);
         }
         for (name, line) in &self.neighbours {
             if noted.neighbours.renew(name, *line) {
@@ -195,6 +220,8 @@ pub(super) struct Noted {
     next_event: u64,
     last_end: Option<u64>,
     observed: Option<usize>,
+    /// How many wait that are for one superior.
+    seen: Option<usize>,
     neighbours: Marks<u64>,
     /// Those of instructions, reports and what is local.
     inboxes: [Marks<(u64, u64, u64)>; 3],

@@ -121,6 +121,15 @@ where
                 Output::Observed { facts, reported_to } => {
                     self.hold(Effect::Observed { facts, reported_to });
                 }
+                Output::Seen {
+                    to,
+                    facts,
+                    reported,
+                } => self.hold(Effect::Seen {
+                    to,
+                    facts,
+                    reported,
+                }),
                 Output::Event(event) => self.tell_event(event),
                 Output::Local(local) => {
                     let message = self.mailboxes.local_message(&self.name, self.epoch, local);

@@ -66,6 +66,8 @@ impl Simulation<'_> {
                     self.send(who, *to, message);
                 }
             }
+            // Nobody here is the body of several.
+            Effect::Seen { .. } => {}
             Effect::Event { number, event } => {
                 self.tell(|| {
                     let goal = event.goal.as_ref().map_or("", Symbol::as_str);

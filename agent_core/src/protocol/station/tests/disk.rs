@@ -9,7 +9,7 @@ fn observe() -> Command {
 fn observed(effects: &[Effect<Infallible, u64>]) -> usize {
     let observed = effects
         .iter()
-        .filter(|effect| matches!(effect, Effect::Observed { .. }));
+        .filter(|effect| matches!(effect, Effect::Observed { .. } | Effect::Seen { .. }));
     observed.count()
 }
 
@@ -114,7 +114,7 @@ fn what_was_observed_and_not_told_before_the_process_died_is_told_after() {
     above.end_writing();
     // It dies before the effects go out.
     above.restart();
-    assert_eq!(observed(&above.effects()), 1);
+    assert_eq!(observed(&above.effects()), 2);
     above.command(go());
     above.write();
     above.effects();

@@ -66,6 +66,11 @@ impl Machine for Toy {
                             facts: vec![FactChange::Remove(Atom::new("open", ["door"]))],
                             reported_to: None,
                         });
+                        self.outputs.push_back(Output::Seen {
+                            to: "above".into(),
+                            facts: vec![FactChange::Remove(Atom::new("at", ["door"]))],
+                            reported: false,
+                        });
                     }
                     Command::Cancel(goal) => self.outputs.push_back(Output::Event(Event {
                         at,
