@@ -228,6 +228,8 @@ where
                 }
                 return;
             }
+            Output::Seen { reported: true, .. } => return,
+            Output::Seen { to, facts, .. } => (to, Message::Facts(facts)),
             Output::Event(event) => {
                 self.events.push((from.clone(), event));
                 return;
