@@ -8,6 +8,7 @@ use agent_core::model::{Domain, ExecutionModel, Symbol};
 
 use crate::Finding;
 use crate::execution_model::{place_of, read_model};
+use crate::restaurant::Restaurant;
 
 /// What one agent plans with. Whoever has one knows that it was checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +60,7 @@ pub fn level_from_texts(
 }
 
 /// Checks all levels of a directory, each on its own and whether they fit together, and says which
-/// they are.
+/// they are. If there is a `room.toml`, that too, with its map.
 pub fn check_domain_dir(dir: &Path) -> Result<Vec<String>, Vec<Finding>> {
     let names = level_names(dir).map_err(|finding| vec![finding])?;
     let mut findings = Vec::new();
@@ -78,6 +79,9 @@ pub fn check_domain_dir(dir: &Path) -> Result<Vec<String>, Vec<Finding>> {
             let file = dir.join(format!("{name}.hddl"));
             findings.extend(unexecuted(&file, level, &others));
         }
+    }
+    if findings.is_empty() && dir.join("room.toml").exists() {
+        findings.extend(Restaurant::read(dir).err().unwrap_or_default());
     }
     if findings.is_empty() {
         Ok(names)

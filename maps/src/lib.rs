@@ -21,6 +21,7 @@ pub use levels::{
     AreaMaps, area_level, area_maps, area_start, node_level, node_start, whole_node_level,
 };
 pub use place::{NotInOrder, Place};
+pub use restaurant::Restaurant;
 pub use rmf::{AreasBy, FromRmf, RmfOptions, from_rmf};
 pub use scaled::{MOST_NODES, scaled_map};
 pub use site::{Area, Door, Node, Passage, Route, Site, Summary, check_map};
