@@ -9,5 +9,6 @@
 pub mod agent;
 pub mod language;
 pub mod model;
+pub mod parallel;
 pub mod planner;
 pub mod protocol;

@@ -22,6 +22,7 @@ mod revise;
 mod state;
 #[cfg(test)]
 mod typing;
+mod ways;
 mod what_if;
 
 pub use any::{AnyPlanner, PlannerKind};
@@ -37,6 +38,7 @@ pub use revise::{
     advance, broken_protection, effect_of, effect_of_suspension, instance, number_of, project,
     simulate,
 };
+pub use ways::{adds_and_removes, ways_to};
 pub use what_if::{Considered, WhatIf, consider, if_mended};
 
 use std::collections::BTreeSet;
