@@ -33,7 +33,7 @@ use disk::{AnyMedium, in_words};
 use examine::{FORMAT_KEY, WHAT_KEY, builder, examine};
 
 /// What is understood here. A release that writes otherwise counts one up.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 const ABOUT: TableDefinition<'_, &str, &str> = TableDefinition::new("about");
 const ROWS: TableDefinition<'_, &str, &[u8]> = TableDefinition::new("rows");

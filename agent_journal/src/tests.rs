@@ -187,11 +187,11 @@ fn a_newer_journal_is_refused_and_left_untouched() {
     transaction
         .open_table(ABOUT)
         .unwrap()
-        .insert(FORMAT_KEY, "2")
+        .insert(FORMAT_KEY, "3")
         .unwrap();
     transaction.commit().unwrap();
     drop(database);
-    let error = refused(&place, "journal format 2; this one reads journal format 1");
+    let error = refused(&place, "journal format 3; this one reads journal format 2");
     assert!(matches!(error, JournalError::Newer { .. }), "{error}");
     let mut bytes = fs::read(&place.path).unwrap();
     bytes[64] = 4;

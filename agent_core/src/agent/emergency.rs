@@ -47,6 +47,11 @@ impl<P: Planner> Agent<P> {
         urgent.outranks(goal).then(|| Yield::To(urgent.id.clone()))
     }
 
+    /// Whether the running goal is to end or to make room, and not only to rest.
+    pub(super) fn gives_way(&self) -> bool {
+        !matches!(self.reason_to_yield(), None | Some(Yield::Alone))
+    }
+
     /// Sets the running goal aside if it is not to go on and no action runs for it (steps 3c and
     /// 3d). Returns whether it did.
     pub(super) fn yields_now(&mut self) -> bool {

@@ -108,6 +108,7 @@ impl<P: Planner> Agent<P> {
                 executor,
                 step,
                 due,
+                done: None,
             });
         }
     }
@@ -134,7 +135,7 @@ impl<P: Planner> Agent<P> {
         };
         match report {
             Report::Started | Report::Progress { .. } => {}
-            Report::Success { facts } => self.succeeded(execution, &facts),
+            Report::Success { facts } => self.said_to_be_done(execution, &facts),
             Report::Failure {
                 reason,
                 facts,
@@ -143,7 +144,7 @@ impl<P: Planner> Agent<P> {
                 if let Some(running) = &mut self.running {
                     running.intention.blocked_by.extend(blocked_by);
                 }
-                self.failed(execution, reason, &facts);
+                self.fails(execution, reason, &facts, None);
             }
             Report::Unknown { reason, facts } => self.uncertain(execution, &reason, &facts),
             Report::Suspended { facts } => self.suspended(execution, &facts),
@@ -208,13 +209,54 @@ impl<P: Planner> Agent<P> {
     }
 
     /// Step 7b after a failure: the action is still to be done, and the facts say why it was not.
-    pub(super) fn failed(&mut self, execution: Execution, reason: String, facts: &[FactChange]) {
+    ///
+    /// `undo`: what undoes it, if it was stopped halfway and is not to be resumed.
+    pub(super) fn failed(
+        &mut self,
+        execution: Execution,
+        reason: String,
+        facts: &[FactChange],
+        undo: Option<Item>,
+    ) {
         if let Some(running) = &mut self.running {
             let purpose = execution.step.purpose().clone();
             let failures = running.intention.failures.entry(purpose).or_default();
             *failures = failures.saturating_add(1);
         }
-        self.ended_otherwise(execution, reason, facts);
+        self.not_done(execution, reason, facts, undo);
+    }
+
+    /// The action counts as failed, and what it was for is so all the same: it goes on behind it.
+    pub(super) fn achieved_otherwise(
+        &mut self,
+        execution: Execution,
+        reason: String,
+        facts: &[FactChange],
+    ) {
+        let step = execution.step;
+        let facts = self.known(facts);
+        let changes = self.learn(&facts);
+        let model = self.configuration.model.actions.get(&step.purpose().name);
+        let repeatable = model.is_none_or(|model| model.repeatable);
+        if let Some(running) = &mut self.running {
+            running.phase = Phase::Planning;
+            running.surprised = true;
+            let intention = &mut running.intention;
+            intention.last_failure = Some(format!("{} failed: {reason}", step.action()));
+            intention.forget(&execution.id);
+            intention.after(&step, repeatable);
+            let plans = &mut intention.plans;
+            plans.retain_mut(|plan| planner::advance(plan, step.purpose()));
+        }
+        let goal = self.running_goal();
+        let what = Happening::ActionFinished {
+            id: execution.id,
+            action: step.action().clone(),
+            failure: Some(reason),
+        };
+        self.emit(goal.as_ref(), what);
+        self.believed(changes);
+        self.conclude();
     }
 
     /// The same, if the action is not to blame.
@@ -223,6 +265,16 @@ impl<P: Planner> Agent<P> {
         execution: Execution,
         reason: String,
         facts: &[FactChange],
+    ) {
+        self.not_done(execution, reason, facts, None);
+    }
+
+    fn not_done(
+        &mut self,
+        execution: Execution,
+        reason: String,
+        facts: &[FactChange],
+        undo: Option<Item>,
     ) {
         let step = execution.step;
         let facts = self.known(facts);
@@ -234,6 +286,9 @@ impl<P: Planner> Agent<P> {
             intention.last_failure = Some(format!("{} failed: {reason}", step.action()));
             intention.around(&step, None, None);
             intention.forget(&execution.id);
+            if undo.is_some() {
+                intention.around(&step, None, undo);
+            }
         }
         let goal = self.running_goal();
         self.emit(

@@ -9,6 +9,7 @@ mod aside;
 mod check;
 mod command;
 mod configuration;
+mod confirm;
 mod emergency;
 mod ended;
 mod excerpts;
@@ -127,6 +128,9 @@ struct Execution {
     step: Step,
     /// When it has taken too long.
     due: Option<Time>,
+    /// The executor says that it is done, and sensors have not confirmed it yet: what was told with
+    /// that word and since.
+    done: Option<Vec<FactChange>>,
 }
 
 impl<P: Planner> Agent<P> {
@@ -237,6 +241,9 @@ impl<P: Planner> Agent<P> {
             match running.phase {
                 Phase::Stopping(_) => return,
                 Phase::Executing(_) => {
+                    if self.takes_the_executors_word() {
+                        continue;
+                    }
                     self.stop_if_due();
                     return;
                 }

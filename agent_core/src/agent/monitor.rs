@@ -1,6 +1,6 @@
 //! What turns out otherwise: observed facts, protected states, time-outs, deadlines.
 
-use super::{Agent, Phase};
+use super::{Agent, Phase, Running};
 use crate::model::{Fact, FactChange};
 use crate::planner::{self, Planner};
 use crate::protocol::Happening;
@@ -32,7 +32,7 @@ impl<P: Planner> Agent<P> {
         let known = self.known(facts);
         let changes = self.learn(&known);
         if changes.is_empty() {
-            return;
+            return self.look_for_confirmation(&known);
         }
         if let Some(running) = &mut self.running {
             running.surprised = true;
@@ -46,6 +46,7 @@ impl<P: Planner> Agent<P> {
             self.plan();
         }
         self.look_after_the_action();
+        self.look_for_confirmation(&known);
         self.tell_of_surprises();
     }
 
@@ -82,6 +83,8 @@ impl<P: Planner> Agent<P> {
     /// no longer holds.
     fn look_after_the_action(&mut self) {
         let problem = self.problem();
+        let execution = self.running.as_ref().and_then(Running::execution);
+        let monitored = execution.is_some_and(|it| self.is_monitored(it.step.purpose()));
         let Some(running) = &mut self.running else {
             return;
         };
@@ -89,7 +92,11 @@ impl<P: Planner> Agent<P> {
             return;
         };
         let purpose = execution.step.purpose();
+        // What has done what it was for protects nothing any more.
+        let at_work = execution.done.is_none()
+            && (!monitored || planner::missing_goal_state(&problem, purpose).is_some());
         let broken = planner::broken_protection(&problem, purpose)
+            .filter(|_| at_work)
             .map(|why| format!("{why}, which {purpose} protects"));
         let plans = &running.intention.plans;
         let verdict = plans
@@ -122,17 +129,24 @@ impl<P: Planner> Agent<P> {
         for goal in late {
             self.cancel(&goal, "its deadline has passed");
         }
+        let is_late = |running: &Running| running.due().is_some_and(|due| due <= now);
+        if !self.running.as_ref().is_some_and(is_late) || self.was_not_confirmed() {
+            return;
+        }
+        let execution = self.running.as_ref().and_then(Running::execution);
+        let monitored = execution.is_some_and(|it| self.is_monitored(it.step.purpose()));
         let Some(running) = &mut self.running else {
             return;
         };
-        if running.due().is_some_and(|due| due <= now)
-            && let Phase::Executing(execution) = &running.phase
-        {
+        if let Phase::Executing(execution) = &running.phase {
             let purpose = execution.step.purpose().clone();
-            // Counts as a failure, so that it is not tried for ever.
-            let failures = &mut running.intention.failures;
-            let failures = failures.entry(purpose.clone()).or_default();
-            *failures = failures.saturating_add(1);
+            // Counts as a failure, so that it is not tried for ever; one that is not resumed counts
+            // when it has stopped.
+            if !monitored {
+                let failures = &mut running.intention.failures;
+                let failures = failures.entry(purpose.clone()).or_default();
+                *failures = failures.saturating_add(1);
+            }
             running.broken = Some(format!("{purpose} takes longer than it may"));
         }
     }

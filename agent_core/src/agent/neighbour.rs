@@ -121,7 +121,8 @@ impl<P: Planner> Agent<P> {
         self.drop_goals_of(name, &reason);
         self.lose_records_of(name, &reason);
         let execution = self.running.as_ref().and_then(Running::execution);
-        if let Some(execution) = execution.filter(|it| it.executor == *name).cloned() {
+        let under_way = execution.filter(|it| it.executor == *name && it.done.is_none());
+        if let Some(execution) = under_way.cloned() {
             self.uncertain(execution, &reason, &[]);
         }
     }

@@ -39,6 +39,9 @@ pub(super) fn continuations(
 impl<P: Planner> Agent<P> {
     /// The executor stands still (Algorithm 2, step 7c).
     pub(super) fn suspended(&mut self, execution: Execution, facts: &[FactChange]) {
+        if let Some(reason) = self.failure_of(&execution) {
+            return self.stopped_for_good(execution, reason, facts);
+        }
         let step = execution.step;
         // Step 1.
         let declared = planner::effect_of_suspension(&self.problem(), step.purpose());

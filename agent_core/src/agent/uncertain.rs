@@ -42,7 +42,12 @@ impl<P: Planner> Agent<P> {
         all.filter(|all| *all)
     }
 
-    fn end_as_unknown(&mut self, execution: Execution, reason: &str, facts: &[FactChange]) {
+    pub(super) fn end_as_unknown(
+        &mut self,
+        execution: Execution,
+        reason: &str,
+        facts: &[FactChange],
+    ) {
         let facts = self.known(facts);
         let changes = self.learn(&facts);
         if let Some(running) = &mut self.running {

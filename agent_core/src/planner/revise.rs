@@ -94,6 +94,18 @@ pub fn broken_protection(problem: &Problem, action: &Action) -> Option<String> {
         .err()
 }
 
+/// In words, the first of an action's goal states that does not hold.
+pub fn missing_goal_state(problem: &Problem, action: &Action) -> Option<String> {
+    let delta = Delta::new();
+    let view = View {
+        problem,
+        delta: &delta,
+    };
+    let model = problem.model.actions.get(&action.name)?;
+    view.check(&model.goal_states, &bind_arguments(&action.args, &[]))
+        .err()
+}
+
 /// A number of the execution model, for an action.
 pub fn number_of(problem: &Problem, number: &Number, action: &Action) -> Option<f64> {
     let delta = Delta::new();

@@ -364,6 +364,7 @@ fn execution(
         executor: row.executor,
         step: reader.step(row.step)?,
         due: row.due,
+        done: row.done,
     })
 }
 

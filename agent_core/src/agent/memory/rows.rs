@@ -119,6 +119,7 @@ pub(super) struct ExecutionRow {
     pub executor: Symbol,
     pub step: StepRow,
     pub due: Option<Time>,
+    pub done: Option<Vec<FactChange>>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]

@@ -75,8 +75,13 @@ fn same_phase(a: &Phase, b: &Phase) -> bool {
                 executor,
                 step,
                 due,
+                done,
             } = a;
-            *id == b.id && *executor == b.executor && same_step(step, &b.step) && *due == b.due
+            *id == b.id
+                && *executor == b.executor
+                && same_step(step, &b.step)
+                && *due == b.due
+                && *done == b.done
         }
         _ => false,
     }
@@ -231,6 +236,7 @@ mod tests {
                 executor: "left".into(),
                 step: step(),
                 due: None,
+                done: None,
             }),
             resumed: false,
             set_aside: false,
@@ -264,6 +270,7 @@ mod tests {
             |it| execution(it).id = id(3),
             |it| execution(it).executor = "right".into(),
             |it| execution(it).due = Some(Time::ZERO),
+            |it| execution(it).done = Some(Vec::new()),
             |it| execution(it).step.frame = None,
             |it| execution(it).step.frame = step().frame,
             |it| execution(it).step.cost = Cost(2),

@@ -260,6 +260,7 @@ fn execution_row(writer: &mut Writer, execution: &Execution) -> ExecutionRow {
         executor: execution.executor.clone(),
         step: writer.step(&execution.step),
         due: execution.due,
+        done: execution.done.clone(),
     }
 }
 

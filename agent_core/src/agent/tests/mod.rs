@@ -1,5 +1,6 @@
 //! Agents in a small world, without anything else.
 
+mod confirm;
 mod ended;
 pub(in crate::agent) mod history;
 mod hold;

@@ -15,6 +15,7 @@ use crate::protocol::{
 /// An agent that says everything to whoever asks.
 pub struct Rig {
     pub agent: Agent<NaivePlanner>,
+    make: fn(u64, NaivePlanner) -> Agent<NaivePlanner>,
     pub now: Time,
     epoch: u64,
     rows: Rows,
@@ -26,9 +27,15 @@ pub struct Rig {
 
 impl Rig {
     pub fn new() -> Self {
+        Self::of(toy::agent)
+    }
+
+    /// The same with an agent that is made otherwise.
+    pub fn of(make: fn(u64, NaivePlanner) -> Agent<NaivePlanner>) -> Self {
         let planner = NaivePlanner::new(Settings::default());
         Self {
-            agent: toy::agent(1, planner),
+            agent: make(1, planner),
+            make,
             now: Time::ZERO,
             epoch: 1,
             rows: Rows::new(),
@@ -68,7 +75,7 @@ impl Rig {
     pub fn restart(&mut self) {
         self.epoch += 1;
         let planner = NaivePlanner::new(Settings::default());
-        self.agent = toy::agent(self.epoch, planner);
+        self.agent = (self.make)(self.epoch, planner);
         let recalled = self.agent.recall(&self.rows);
         recalled.expect("what an agent has written down can be read");
     }
@@ -140,6 +147,26 @@ impl Rig {
 
     pub fn suspended(&mut self) {
         self.report(Report::Suspended { facts: Vec::new() });
+    }
+
+    /// What somebody sees.
+    pub fn seen(&mut self, facts: &[&str]) {
+        self.give(Input::Observation(toy::changes(facts)));
+    }
+
+    /// The executor has done it, and says what its sensors tell.
+    pub fn done(&mut self, facts: &[&str]) {
+        let facts = toy::changes(facts);
+        self.report(Report::Success { facts });
+    }
+
+    /// Why actions have failed.
+    pub fn failures(&self) -> Vec<&str> {
+        let why = self.events.iter().filter_map(|event| match &event.what {
+            Happening::ActionFinished { failure, .. } => failure.as_deref(),
+            _ => None,
+        });
+        why.collect()
     }
 
     pub fn unknown(&mut self, facts: Vec<FactChange>) {

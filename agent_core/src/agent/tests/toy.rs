@@ -163,6 +163,31 @@ pub fn agent<P: Planner>(epoch: u64, planner: P) -> Agent<P> {
     Agent::new(configuration(epoch, policy()), planner)
 }
 
+/// An agent of this world that believes what it has done only when sensors confirm it.
+pub fn monitored<P: Planner>(epoch: u64, planner: P) -> Agent<P> {
+    let mut configuration = configuration(epoch, policy());
+    let model = Arc::make_mut(&mut configuration.model);
+    let goal_states = [("move", "(at ?b)"), ("explain", "(told ?a)")];
+    for (action, goal_state) in goal_states {
+        let names = ["?a", "?b"].map(parameter);
+        let pattern = parse_pattern(goal_state, &names).expect("a pattern");
+        if let Some(action) = model.actions.get_mut(action) {
+            action.goal_states = vec![Clause::Fact(true, pattern)];
+            action.timeout_s = Some(Number::Constant(60.0));
+        }
+    }
+    Agent::new(configuration, planner)
+}
+
+/// Facts that are so, and those that are not.
+pub fn changes(texts: &[&str]) -> Vec<FactChange> {
+    let change = |text: &&str| match text.strip_prefix("not ") {
+        Some(text) => FactChange::Remove(fact(text)),
+        None => FactChange::Add(fact(text)),
+    };
+    texts.iter().map(change).collect()
+}
+
 /// Slices so small that planning is met in the middle, and few goals that are remembered.
 pub fn policy() -> Policy {
     Policy {

@@ -89,6 +89,17 @@ pub enum DomainError {
         /// Whose effect it is.
         whose: String,
     },
+    /// Nobody waits for sensors without an end.
+    #[error(
+        "`{action}` is done only when sensors confirm it; add a `timeout_s`, after which it counts \
+         as failed"
+    )]
+    NoTimeOut {
+        /// Where it stands.
+        key: String,
+        /// The action.
+        action: Symbol,
+    },
     /// A fact that others bring about is brought about by this agent.
     #[error(
         "`{predicate}` is observable, so others change it, but `{action}` makes it true; remove \
@@ -135,6 +146,7 @@ impl DomainError {
             | Self::CannotResume { key, .. }
             | Self::EndsElsewhere { key, .. }
             | Self::Unproved { key, .. }
+            | Self::NoTimeOut { key, .. }
             | Self::ObservableAdded { key, .. } => key,
         }
     }

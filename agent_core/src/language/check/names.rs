@@ -106,6 +106,12 @@ impl<'a> Place<'a> {
         }
         self.condition(&protected, &action.protected);
         self.condition(&goal_states, &action.goal_states);
+        if !action.goal_states.is_empty() && action.timeout_s.is_none() {
+            self.errors.push(DomainError::NoTimeOut {
+                key: goal_states,
+                action: self.subject.clone(),
+            });
+        }
         for rule in &action.costs {
             let mut place = Place::new(self.domain, self.subject, &rule.parameters, self.errors);
             let [variables, given, cost] = &cost_keys;

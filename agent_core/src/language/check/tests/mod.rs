@@ -36,6 +36,25 @@ const WALK: &str = "(define (domain walk)
 
 const SUSPENDED: &[&str] = &["(not (at ?x))", "(on ?a)", "(left ?x)"];
 
+#[test]
+fn an_action_that_sensors_have_to_confirm_needs_a_time_out() {
+    let domain = walk();
+    let parameters = &domain.operators["move"].parameters;
+    let mut model = suspended(&domain, "move", SUSPENDED, "(resume-move ?x ?y ?a)");
+    let action = model.actions.get_mut("move").unwrap();
+    action.goal_states = vec![parse_literal("(at ?y)", parameters).unwrap()];
+    let errors = check_model(&domain, &model);
+    let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        errors,
+        [
+            "`move` is done only when sensors confirm it; add a `timeout_s`, after which it counts as failed"
+        ]
+    );
+    model.actions.get_mut("move").unwrap().timeout_s = Some(parse_number("5", parameters).unwrap());
+    assert_eq!(check_model(&domain, &model), []);
+}
+
 /// The domain with one piece replaced.
 fn walk_with(piece: &str, replacement: &str) -> Domain {
     assert!(WALK.contains(piece), "{piece}");
