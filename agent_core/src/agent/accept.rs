@@ -10,7 +10,16 @@ use crate::protocol::{GoalId, GoalRequest, Happening, Rejection, Urgency};
 impl<P: Planner> Agent<P> {
     /// Step 1 of Algorithms 3 and 4: a user's goal.
     pub(super) fn accept(&mut self, request: GoalRequest) -> Result<GoalId, Rejection> {
-        match self.consider(&request) {
+        self.accept_beside(request, 0)
+    }
+
+    /// The same, if so many goals of that urgency wait elsewhere that count as this agent's.
+    pub(super) fn accept_beside(
+        &mut self,
+        request: GoalRequest,
+        elsewhere: usize,
+    ) -> Result<GoalId, Rejection> {
+        match self.consider(&request, elsewhere) {
             Ok(Some(known)) => Ok(known),
             Ok(None) => Ok(self.take_on(request)),
             Err(rejection) => {
@@ -22,7 +31,11 @@ impl<P: Planner> Agent<P> {
     }
 
     /// The goal's name if it is known already, or why it is refused.
-    fn consider(&self, request: &GoalRequest) -> Result<Option<GoalId>, Rejection> {
+    pub(super) fn consider(
+        &self,
+        request: &GoalRequest,
+        elsewhere: usize,
+    ) -> Result<Option<GoalId>, Rejection> {
         if request.tasks.is_empty() {
             return Err(Rejection::NoTask);
         }
@@ -34,20 +47,15 @@ impl<P: Planner> Agent<P> {
             .as_ref()
             .and_then(|id| self.tasks_of(id).map(|tasks| (id, tasks)))
         {
-            None => self.room_for(request.urgency).map(|()| None),
+            None => self.room_for(request.urgency, elsewhere).map(|()| None),
             Some((id, tasks)) if tasks == request.tasks => Ok(Some(id.clone())),
             Some((id, _)) => Err(Rejection::NameTaken(id.clone())),
         }
     }
 
     /// Whether one more goal of this urgency may wait. What superiors ask for is bounded by them.
-    fn room_for(&self, urgency: Urgency) -> Result<(), Rejection> {
-        let running = self.running.iter().map(|running| &running.intention);
-        let of_kind = |intention: &&Intention| {
-            intention.goal.superior.is_none() && intention.goal.urgency == urgency
-        };
-        let all = self.all_intentions().filter(of_kind).count();
-        let waiting = all - running.filter(of_kind).count();
+    fn room_for(&self, urgency: Urgency, elsewhere: usize) -> Result<(), Rejection> {
+        let waiting = self.waiting_of(urgency) + elsewhere;
         let most = self.configuration.policy.most_waiting;
         if waiting < most {
             return Ok(());
@@ -63,8 +71,18 @@ impl<P: Planner> Agent<P> {
         })
     }
 
+    /// How many goals of users of that urgency are not pursued.
+    pub(crate) fn waiting_of(&self, urgency: Urgency) -> usize {
+        let running = self.running.iter().map(|running| &running.intention);
+        let of_kind = |intention: &&Intention| {
+            intention.goal.superior.is_none() && intention.goal.urgency == urgency
+        };
+        let all = self.all_intentions().filter(of_kind).count();
+        all - running.filter(of_kind).count()
+    }
+
     /// What a goal is for that is pursued, waits or has ended.
-    fn tasks_of(&self, id: &GoalId) -> Option<&[Task]> {
+    pub(crate) fn tasks_of(&self, id: &GoalId) -> Option<&[Task]> {
         let ended = self.ended.iter().map(|ended| (&ended.id, &ended.tasks));
         let known = self.all_intentions().map(|i| (&i.goal.id, &i.goal.tasks));
         let mut all = known.chain(ended);

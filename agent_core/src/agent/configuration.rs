@@ -84,6 +84,9 @@ pub struct Policy {
     pub expansions_per_slice: u64,
     /// How often an action may fail before it is no longer tried for a goal.
     pub attempts: u32,
+    /// Whether it waits for leave before each action, and before it gives a goal up for want of a plan:
+    /// several agents of one robot do ([`ParallelAgent`](crate::parallel::ParallelAgent)).
+    pub asks_leave: bool,
     /// How many goals of users may wait (for their turn, suspended or set aside), emergencies and
     /// others counted apart: who fills one list leaves room in the other. What is kept for goals,
     /// in memory and on disk, is bounded by this.
@@ -103,6 +106,7 @@ impl Default for Policy {
             expansions_before_stopping: 200,
             expansions_per_slice: 200,
             attempts: 3,
+            asks_leave: false,
             most_waiting: MOST_WAITING,
             ended_kept: 1000,
             ended_kept_for: ONE_HOUR,

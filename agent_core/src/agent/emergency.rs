@@ -15,6 +15,8 @@ enum Yield {
     Held,
     /// The user wants it set aside.
     SetAside,
+    /// Nothing is to run here at present ([`Agent::pause`]).
+    Paused(String),
     /// A superior is gone: nothing is started before it is back.
     Alone,
     /// This one goes first (Algorithm 3).
@@ -22,6 +24,11 @@ enum Yield {
 }
 
 impl<P: Planner> Agent<P> {
+    /// Whether the running goal is not to go on.
+    pub(super) fn is_to_yield(&self) -> bool {
+        self.reason_to_yield().is_some()
+    }
+
     /// Whether the running goal is not to go on; decided anew whenever something has changed, so
     /// that the most urgent of several reasons counts.
     fn reason_to_yield(&self) -> Option<Yield> {
@@ -39,6 +46,9 @@ impl<P: Planner> Agent<P> {
         }
         if running.set_aside {
             return Some(Yield::SetAside);
+        }
+        if let Some(why) = &self.paused {
+            return Some(Yield::Paused(why.clone()));
         }
         if self.holds() {
             return Some(Yield::Alone);
@@ -65,6 +75,11 @@ impl<P: Planner> Agent<P> {
                 if let Some(running) = self.take_running() {
                     self.tell_suspended(&running.intention, "the user wants it set aside");
                     self.aside.add(running.intention, WaitsFor::User);
+                }
+            }
+            Yield::Paused(why) => {
+                if let Some(running) = self.take_running() {
+                    self.push(running.intention, &why);
                 }
             }
             // It stays where it is, and is planned for when the superior is back.

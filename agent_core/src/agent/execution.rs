@@ -1,5 +1,6 @@
 //! Algorithm 2: planning and plan execution.
 
+use super::leave::Ready;
 use super::{Agent, Execution, Phase, Running};
 use crate::model::{FactChange, Symbol, Time};
 use crate::planner::{self, Item, Planner, Step};
@@ -10,13 +11,13 @@ impl Running {
     pub(super) fn due(&self) -> Option<Time> {
         match &self.phase {
             Phase::Executing(execution) => execution.due,
-            Phase::Planning | Phase::Stopping(_) => None,
+            Phase::Planning | Phase::Ready(_) | Phase::Stopping(_) => None,
         }
     }
 
     pub(super) fn execution(&self) -> Option<&Execution> {
         match &self.phase {
-            Phase::Planning => None,
+            Phase::Planning | Phase::Ready(_) => None,
             Phase::Executing(execution) | Phase::Stopping(execution) => Some(execution),
         }
     }
@@ -37,6 +38,18 @@ impl<P: Planner> Agent<P> {
             } else {
                 self.plan()
             };
+        };
+        if self.configuration.policy.asks_leave {
+            running.phase = Phase::Ready(Ready::Step);
+            return;
+        }
+        self.begin(step);
+    }
+
+    /// The same, once it is known that this is the action.
+    pub(super) fn begin(&mut self, step: Step) {
+        let Some(running) = &mut self.running else {
+            return;
         };
         let goal = running.intention.goal.id.clone();
         let map = self.map_for(&step);

@@ -17,8 +17,10 @@ mod execution;
 mod goal;
 mod instruct;
 mod intention;
+mod leave;
 mod memory;
 mod monitor;
+mod moving;
 mod neighbour;
 mod planning;
 mod stack;
@@ -35,6 +37,7 @@ pub use configuration::{Configuration, Executors, MapsBelow, Policy};
 pub use ended::Ended;
 pub use goal::Goal;
 pub use intention::{Intention, Record};
+pub use leave::Proposal;
 pub use stack::{ResumedBy, SuspendedGoal, SuspendedGoalStack};
 pub use waiting::WaitingGoals;
 
@@ -46,6 +49,7 @@ use crate::model::{Belief, Domain, FactChange, Map, Symbol, Task, Time};
 use crate::planner::{Planner, Step};
 use crate::protocol::{ActionId, GoalId, Happening, Input, Machine, Output, Reply};
 use excerpts::Excerpts;
+use leave::Ready;
 use memory::Memory;
 use neighbour::Neighbours;
 
@@ -74,6 +78,8 @@ pub struct Agent<P> {
     next_ended: u64,
     /// A superior wants this goal, and what runs above it, suspended.
     hold: Option<(Symbol, ActionId)>,
+    /// In words, why nothing is to run here at present, whatever the goals.
+    paused: Option<String>,
     /// What superiors were last told, in their words.
     told: Belief,
     /// Values that executors have named since.
@@ -114,6 +120,8 @@ struct Running {
 enum Phase {
     /// For the planner.
     Planning,
+    /// For leave to go on ([`Policy::asks_leave`]).
+    Ready(Ready),
     /// For the end of an action (Algorithm 2, step 7a).
     Executing(Execution),
     /// For an action to be suspended or to end (Algorithm 3, step 3c; Algorithm 5, step 4).
@@ -156,6 +164,7 @@ impl<P: Planner> Agent<P> {
             ended: VecDeque::new(),
             next_ended: 0,
             hold: None,
+            paused: None,
             told: Belief::default(),
             new_values: Vec::new(),
             next_action: 1,
@@ -224,7 +233,7 @@ impl<P: Planner> Agent<P> {
     /// The action that is being executed, and whether it is to stop.
     pub fn executing(&self) -> Option<(&ActionId, &Task, bool)> {
         match &self.running.as_ref()?.phase {
-            Phase::Planning => None,
+            Phase::Planning | Phase::Ready(_) => None,
             Phase::Executing(execution) => Some((&execution.id, execution.step.action(), false)),
             Phase::Stopping(execution) => Some((&execution.id, execution.step.action(), true)),
         }
@@ -246,6 +255,11 @@ impl<P: Planner> Agent<P> {
                     }
                     self.stop_if_due();
                     return;
+                }
+                Phase::Ready(_) => {
+                    if !self.yields_now() || self.is_paused() {
+                        return;
+                    }
                 }
                 Phase::Planning => {
                     if self.yields_now() {

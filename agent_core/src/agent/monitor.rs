@@ -41,7 +41,7 @@ impl<P: Planner> Agent<P> {
         if self
             .running
             .as_ref()
-            .is_some_and(|r| matches!(r.phase, Phase::Planning))
+            .is_some_and(|r| matches!(r.phase, Phase::Planning | Phase::Ready(_)))
         {
             self.plan();
         }

@@ -191,11 +191,10 @@ impl<P: Planner> Agent<P> {
             self.planner.keep(&intention.goal.id, &intention.agendas);
         }
         // What was begun to be planned may be about what is gone.
-        if self
-            .running
-            .as_ref()
-            .is_some_and(|r| matches!(r.phase, Phase::Planning))
+        if let Some(running) = &mut self.running
+            && let Phase::Planning | Phase::Ready(_) = running.phase
         {
+            running.phase = Phase::Planning;
             self.planner.stop();
         }
     }

@@ -136,6 +136,14 @@ impl<P: Planner> Agent<P> {
     /// is in the way; at the top the goal is blocked, moved aside, and tried again when that
     /// changes.
     fn no_plan(&mut self, wanted: Vec<Fact>) {
+        if self.configuration.policy.asks_leave {
+            return self.wait_without_a_plan(wanted);
+        }
+        self.do_without_a_plan(wanted);
+    }
+
+    /// The same, once nobody else is waited for.
+    pub(super) fn do_without_a_plan(&mut self, wanted: Vec<Fact>) {
         let Some(running) = &self.running else {
             return;
         };

@@ -75,7 +75,7 @@ impl<P: Planner> Agent<P> {
         })
     }
 
-    fn outcome_of(&self, superior: &Symbol, id: &ActionId) -> Option<Report> {
+    pub(super) fn outcome_of(&self, superior: &Symbol, id: &ActionId) -> Option<Report> {
         let ended = self.ended.iter().rev();
         let mut of_superior = ended.filter_map(|e| e.superior.as_ref().map(|s| (s, &e.outcome)));
         of_superior

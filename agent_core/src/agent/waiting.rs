@@ -56,7 +56,7 @@ impl WaitingGoals {
 impl<P: Planner> Agent<P> {
     /// Starts or resumes the goal that goes first, if nothing runs. Returns whether it did.
     pub(super) fn start_next(&mut self) -> bool {
-        if self.running.is_some() || self.holds() {
+        if self.running.is_some() || self.paused.is_some() || self.holds() {
             return false;
         }
         let resumable = self.stack.resumable().map(|intention| &intention.goal);

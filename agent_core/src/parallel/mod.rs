@@ -4,8 +4,9 @@
 //! The method is that of the multitasking paper (plan parallelizing as a clique of greatest saving),
 //! with its formulas restored: [`footprint`] says what an action needs and does, [`relation`] which
 //! actions go together, [`clique`] which of those that do save most, and [`layer`] chooses one layer
-//! after another.
+//! after another. [`ParallelAgent`] is composed of ordinary agents by them.
 
+mod agent;
 pub mod clique;
 pub mod footprint;
 pub mod layer;
@@ -15,6 +16,7 @@ mod schedule;
 mod tests;
 mod world;
 
+pub use agent::ParallelAgent;
 pub use clique::{Clique, World};
 pub use footprint::{Candidate, Footprint, Literals};
 pub use layer::{Layer, Underway};

@@ -107,6 +107,19 @@ pub enum Happening {
         /// What is left of the plans that were kept.
         kept: usize,
     },
+    /// Actions of several goals were chosen to be done together.
+    ActionsCombined {
+        /// Which, the oldest goal's first.
+        actions: Vec<Action>,
+        /// What is executed meanwhile.
+        beside: Vec<Action>,
+        /// Which of them wait for the end of which others.
+        after: Vec<(Action, Vec<Action>)>,
+        /// What is saved against one after the other, in seconds.
+        saving_s: f64,
+        /// In words.
+        why: String,
+    },
     /// An executor was told to begin.
     ActionStarted {
         /// Which execution.

@@ -65,6 +65,13 @@ enum What {
         why: String,
         kept: usize,
     },
+    ActionsCombined {
+        actions: Vec<Text<Action>>,
+        beside: Vec<Text<Action>>,
+        after: Vec<(Text<Action>, Vec<Text<Action>>)>,
+        saving_s: f64,
+        why: String,
+    },
     ActionStarted {
         action_id: Text<ActionId>,
         action: Text<Action>,
@@ -238,6 +245,21 @@ fn to_wire(what: &protocol::Happening) -> What {
             why: why.clone(),
             kept: *kept,
         },
+        Core::ActionsCombined {
+            actions,
+            beside,
+            after,
+            saving_s,
+            why,
+        } => What::ActionsCombined {
+            actions: to_text(actions),
+            beside: to_text(beside),
+            after: (after.iter())
+                .map(|(action, before)| (Text(action.clone()), to_text(before)))
+                .collect(),
+            saving_s: *saving_s,
+            why: why.clone(),
+        },
         Core::ActionStarted { id, action } => {
             let (action_id, action) = pair(id, action);
             What::ActionStarted { action_id, action }
@@ -337,6 +359,21 @@ fn from_wire(what: What) -> protocol::Happening {
             expanded,
         },
         What::PlanRevised { why, kept } => Core::PlanRevised { why, kept },
+        What::ActionsCombined {
+            actions,
+            beside,
+            after,
+            saving_s,
+            why,
+        } => Core::ActionsCombined {
+            actions: from_text(actions),
+            beside: from_text(beside),
+            after: (after.into_iter())
+                .map(|(action, before)| (action.0, from_text(before)))
+                .collect(),
+            saving_s,
+            why,
+        },
         What::ActionStarted { action_id, action } => Core::ActionStarted {
             id: action_id.0,
             action: action.0,

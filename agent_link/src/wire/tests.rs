@@ -154,6 +154,22 @@ fn happening() -> impl Strategy<Value = Happening> {
                 }
             }),
         (words(), any::<usize>()).prop_map(|(why, kept)| H::PlanRevised { why, kept }),
+        (
+            vec(atom(), 0..3),
+            vec(atom(), 0..2),
+            vec((atom(), vec(atom(), 0..2)), 0..2),
+            0_u32..1000,
+            words()
+        )
+            .prop_map(|(actions, beside, after, saving, why)| {
+                H::ActionsCombined {
+                    actions,
+                    beside,
+                    after,
+                    saving_s: f64::from(saving) / 4.0,
+                    why,
+                }
+            }),
         execution().prop_map(|(id, action)| H::ActionStarted { id, action }),
         execution().prop_map(|(id, action)| H::ActionStopping { id, action }),
         execution().prop_map(|(id, action)| H::ActionSuspended { id, action }),

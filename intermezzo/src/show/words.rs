@@ -104,6 +104,13 @@ pub(super) fn of_parent(goal: &str, what: &Happening, observable: &Observable) -
                 }
             ),
         ),
+        Happening::ActionsCombined {
+            actions,
+            beside,
+            after,
+            why,
+            ..
+        } => line('∥', DIM, together(actions, beside, after, why)),
         Happening::ActionStarted { action, .. } => line('·', Style::new(), action.to_string()),
         Happening::ActionResumed { action, .. } => line('·', AGAIN, action.to_string()),
         Happening::ActionRolledBack { action, .. } => {
@@ -171,6 +178,23 @@ pub(super) fn of_child(task: &str, what: &Happening, spot: &str) -> Option<Line>
         // Its superior tells the rest, and an action that just goes well needs no words.
         _ => return None,
     })
+}
+
+/// Actions of several goals that are done together.
+fn together(
+    actions: &[Action],
+    beside: &[Action],
+    after: &[(Action, Vec<Action>)],
+    why: &str,
+) -> String {
+    let mut text = format!("together: {}", texts(actions));
+    if !beside.is_empty() {
+        text.push_str(&format!(", beside {}", texts(beside)));
+    }
+    for (action, before) in after {
+        text.push_str(&format!("; {action} after {}", texts(before)));
+    }
+    format!("{text} ({why})")
 }
 
 /// What has become of a role's process.

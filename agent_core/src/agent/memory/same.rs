@@ -68,7 +68,8 @@ impl Written {
 
 fn same_phase(a: &Phase, b: &Phase) -> bool {
     match (a, b) {
-        (Phase::Planning, Phase::Planning) => true,
+        // Written down alike.
+        (Phase::Planning | Phase::Ready(_), Phase::Planning | Phase::Ready(_)) => true,
         (Phase::Executing(a), Phase::Executing(b)) | (Phase::Stopping(a), Phase::Stopping(b)) => {
             let Execution {
                 id,

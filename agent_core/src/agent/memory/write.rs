@@ -215,7 +215,8 @@ fn goal_row(intention: &Intention, running: Option<&Running>, map: Option<u64>) 
     let records = records.collect();
     let running = running.map(|running| RunningRow {
         phase: match &running.phase {
-            Phase::Planning => PhaseRow::Planning,
+            // What it waits for leave for is found out anew.
+            Phase::Planning | Phase::Ready(_) => PhaseRow::Planning,
             Phase::Executing(execution) => {
                 PhaseRow::Executing(execution_row(&mut writer, execution))
             }
