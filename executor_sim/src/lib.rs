@@ -9,11 +9,14 @@
 mod controller;
 mod faults;
 mod floor;
+mod memory;
+mod parts;
 mod place;
 mod profile;
 #[cfg(feature = "process")]
 pub mod program;
 mod refusal;
+mod room;
 mod setup;
 mod signal;
 mod simulated_robot;
@@ -22,8 +25,13 @@ mod world;
 pub use controller::{Controller, Skill, Vocabulary, VocabularyError};
 pub use faults::{Fault, FaultRates, Faults};
 pub use floor::{Floor, FloorError, Passage};
+pub use parts::{Errand, Hindrance, Job, PartName, PartsError, PartsVocabulary, Work};
 pub use place::Place;
 pub use profile::MoverSpec;
+pub use room::{
+    Bottle, Deed, Doing as RoomDoing, Guest, Mover, Pace, ROOM, Room, RoomError, Spot, Tempo,
+    Things, Whereabouts,
+};
 pub use setup::SetupError;
 pub use signal::{MotorCommand, Pose, Sensor, Ticket};
 pub use simulated_robot::SimulatedRobot;

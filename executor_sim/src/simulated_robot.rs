@@ -3,8 +3,10 @@
 use std::collections::VecDeque;
 use std::convert::Infallible;
 
-use agent_core::model::{Domain, ExecutionModel, FactChange, Time};
-use agent_core::protocol::{Durable, Input, Machine, Output, Reply, Row, Rows, Unreadable};
+use agent_core::model::{Domain, ExecutionModel, FactChange, Symbol, Time};
+use agent_core::protocol::{
+    ActionId, Durable, Input, Machine, Output, Reply, Row, Rows, Unreadable,
+};
 
 use crate::{Controller, Faults, Floor, MotorCommand, MoverSpec, Place, Sensor, SetupError, World};
 
@@ -61,6 +63,39 @@ impl SimulatedRobot {
     pub fn restart_controller(&mut self, now: Time, fresh: Controller) {
         self.controller = fresh;
         self.pump(now);
+    }
+
+    /// How the body drives from now on. What it is doing it goes on doing as before.
+    pub(crate) fn set_spec(&mut self, spec: MoverSpec) {
+        self.world.set_spec(spec);
+    }
+
+    /// What the robot's body is, written down: the controller is apart.
+    pub(crate) fn write_down_world(&mut self) -> Vec<Row> {
+        self.world.write_down()
+    }
+
+    /// To be called before what the controller has written down is recalled.
+    pub(crate) fn recall_world(&mut self, rows: &Rows) -> Result<(), Unreadable> {
+        self.world.recall(rows)?;
+        // Where it stands is what the controller asks first.
+        while self.world.poll_output().is_some() {}
+        Ok(())
+    }
+
+    /// What goes wrong from now on.
+    pub(crate) fn set_faults(&mut self, faults: Faults) {
+        self.controller.set_faults(faults);
+    }
+
+    /// Whether it has heard of that execution, and not forgotten it.
+    pub(crate) fn knows(&self, id: &ActionId) -> bool {
+        self.controller.knows(id)
+    }
+
+    /// Whether that is suspended.
+    pub(crate) fn is_suspended(&self, superior: &Symbol, id: &ActionId) -> bool {
+        Durable::is_suspended(&self.controller, superior, id)
     }
 
     /// Carries commands down and sensors up until nobody has anything to say.

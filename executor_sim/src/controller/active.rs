@@ -4,10 +4,10 @@ use agent_core::model::Time;
 use agent_core::protocol::{ActionId, Happening};
 use serde::{Deserialize, Serialize};
 
-use super::memory::Record;
 use super::{Controller, Skill};
 use crate::Ticket;
 use crate::faults::Fault;
+use crate::memory::Record;
 
 /// The action that runs.
 #[derive(Clone, Debug)]

@@ -4,8 +4,8 @@ use agent_core::model::Symbol;
 use agent_core::protocol::{ActionId, Durable, Ledger, Row, Rows, Unreadable, read_row};
 
 use super::active::{Active, Begun, Cut};
-use super::memory::Memory;
 use super::{Controller, MotorCommand};
+use crate::memory::Memory;
 
 const LAST_TICKET: &str = "m/ticket";
 const RUNNING: &str = "m/running";

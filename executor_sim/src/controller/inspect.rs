@@ -5,8 +5,8 @@ use agent_link::Inspect;
 use serde_json::{Value, json};
 
 use super::Controller;
-use super::memory::Record;
 use crate::Place;
+use crate::memory::Record;
 
 impl Inspect for Controller {
     fn status(&self) -> Value {

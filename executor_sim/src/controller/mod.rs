@@ -5,7 +5,6 @@ mod durable;
 #[cfg(feature = "process")]
 mod inspect;
 mod instructions;
-mod memory;
 mod neighbours;
 mod restart;
 mod sensors;
@@ -20,11 +19,11 @@ use agent_core::protocol::Ledger;
 use agent_core::protocol::{Event, Happening, Input, Machine, Output, Reply, Report};
 
 use crate::faults::Fault;
+use crate::memory::{End, Memory, Record};
 use crate::refusal::refuse;
 use crate::{Faults, Floor, MotorCommand, Sensor, Ticket};
 
 use active::{Active, Begun, Run};
-use memory::{End, Memory, Record};
 use surroundings::Surroundings;
 use waiting::Waiting;
 
@@ -98,6 +97,19 @@ impl Controller {
         } else {
             Vec::new()
         }
+    }
+
+    /// What goes wrong from now on.
+    pub(crate) fn set_faults(&mut self, faults: Faults) {
+        self.faults = faults;
+    }
+
+    /// Whether it has heard of that execution, and not forgotten it.
+    pub(crate) fn knows(&self, id: &agent_core::protocol::ActionId) -> bool {
+        self.active(id).is_some()
+            || self.waits(id).is_some()
+            || self.memory.record(id).is_some()
+            || self.memory.over(id).is_some()
     }
 
     /// Whether the robot's place is what was last heard of it.

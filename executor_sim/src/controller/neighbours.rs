@@ -4,8 +4,8 @@ use agent_core::model::{Symbol, Time};
 use agent_core::protocol::{Event, Happening, Output};
 
 use super::Controller;
-use super::memory::Record;
 use crate::WORLD;
+use crate::memory::Record;
 
 impl Controller {
     /// A superior or the world has appeared or vanished.

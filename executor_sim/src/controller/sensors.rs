@@ -6,10 +6,10 @@ use agent_core::model::{Fact, Symbol, Time};
 use agent_core::protocol::{Happening, Output};
 
 use super::active::{Active, Begun, Run};
-use super::memory::Record;
 use super::restart::Account;
 use super::{Controller, End, Skill};
 use crate::faults::Fault;
+use crate::memory::Record;
 use crate::{Place, Sensor, Ticket};
 
 impl Controller {

@@ -9,9 +9,9 @@ use agent_core::model::Time;
 use agent_core::protocol::{ActionId, Happening};
 use serde::{Deserialize, Serialize};
 
-use super::memory::Record;
 use super::{Controller, End};
 use crate::WORLD;
+use crate::memory::Record;
 
 /// An action that was accepted. Nothing has moved for it yet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -118,6 +118,11 @@ impl World {
         self
     }
 
+    /// How the body drives from now on. A motion that has begun is not changed.
+    pub(crate) fn set_spec(&mut self, spec: MoverSpec) {
+        self.spec = spec;
+    }
+
     /// When something was last seen to. A world that is started again goes on from then.
     pub fn time(&self) -> Time {
         self.now

@@ -8,7 +8,7 @@ use agent_core::protocol::{Ledger, Rows, Unreadable, read_rows};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::Skill;
+use crate::Skill;
 
 /// How many actions that are over are remembered. A superior asks again after seconds, not after
 /// a thousand actions.
@@ -17,21 +17,22 @@ const REMEMBERED: usize = 1000;
 const RECORD: &str = "m/record/";
 const OVER: &str = "m/over/";
 
-/// What is needed to resume an action (the paper, section 4: the action executor's record).
+/// What is needed to resume an action (the paper, section 4: the action executor's record). `S` is
+/// what an action is to whoever does it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Record {
-    pub(super) id: ActionId,
+pub(crate) struct Record<S = Skill> {
+    pub(crate) id: ActionId,
     /// To whom the reports go.
-    pub(super) superior: Symbol,
-    pub(super) action: Action,
+    pub(crate) superior: Symbol,
+    pub(crate) action: Action,
     /// What is left to be done: of a speech the rest; of a drive the same drive, since that can
     /// begin anywhere on its arc.
-    pub(super) rest: Skill,
+    pub(crate) rest: S,
 }
 
 /// How an action is over.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) enum End {
+pub(crate) enum End {
     Success,
     Failure {
         reason: String,
@@ -47,48 +48,57 @@ pub(super) enum End {
 
 /// An action that is over.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Over {
-    pub(super) id: ActionId,
-    pub(super) superior: Symbol,
-    pub(super) skill: Skill,
-    pub(super) end: End,
+pub(crate) struct Over<S = Skill> {
+    pub(crate) id: ActionId,
+    pub(crate) superior: Symbol,
+    pub(crate) skill: S,
+    pub(crate) end: End,
 }
 
 /// Suspended actions, and how others have ended. Both are written down entry by entry.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Memory {
+#[derive(Clone, Debug)]
+pub(crate) struct Memory<S = Skill> {
     /// In the order of suspension.
-    records: Numbered<Record>,
+    records: Numbered<Record<S>>,
     /// Oldest first.
-    over: Numbered<Over>,
+    over: Numbered<Over<S>>,
 }
 
-impl Memory {
+impl<S> Default for Memory<S> {
+    fn default() -> Self {
+        Self {
+            records: Numbered::default(),
+            over: Numbered::default(),
+        }
+    }
+}
+
+impl<S: Clone + Serialize + DeserializeOwned> Memory<S> {
     /// How many suspended actions can be resumed.
-    pub(super) fn depth(&self) -> usize {
+    pub(crate) fn depth(&self) -> usize {
         self.records.entries.len()
     }
 
     /// Suspended actions, the latest last.
-    pub(super) fn records(&self) -> impl Iterator<Item = &Record> {
+    pub(crate) fn records(&self) -> impl Iterator<Item = &Record<S>> {
         self.records.entries.values()
     }
 
-    pub(super) fn keep(&mut self, record: Record) {
+    pub(crate) fn keep(&mut self, record: Record<S>) {
         self.records.push(record);
     }
 
-    pub(super) fn record(&self, id: &ActionId) -> Option<&Record> {
+    pub(crate) fn record(&self, id: &ActionId) -> Option<&Record<S>> {
         self.records().find(|record| record.id == *id)
     }
 
-    pub(super) fn take(&mut self, id: &ActionId) -> Option<Record> {
+    pub(crate) fn take(&mut self, id: &ActionId) -> Option<Record<S>> {
         let mut numbered = self.records.entries.iter();
         let number = *numbered.find(|(_, record)| record.id == *id)?.0;
         self.records.remove(number)
     }
 
-    pub(super) fn end(&mut self, job: &Record, end: End) {
+    pub(crate) fn end(&mut self, job: &Record<S>, end: End) {
         if self.over.entries.len() >= REMEMBERED
             && let Some((&oldest, _)) = self.over.entries.first_key_value()
         {
@@ -103,24 +113,24 @@ impl Memory {
     }
 
     /// How the action is over; `None` if it is not, or if that was long ago.
-    pub(super) fn over(&self, id: &ActionId) -> Option<&Over> {
+    pub(crate) fn over(&self, id: &ActionId) -> Option<&Over<S>> {
         // From the back: who asks, asks about what has just ended.
         let mut latest_first = self.over.entries.values().rev();
         latest_first.find(|over| over.id == *id)
     }
 
     /// Whoever had those begun will not ask for them again. Gives back what was suspended.
-    pub(super) fn forget(&mut self, superior: &Symbol) -> Vec<Record> {
+    pub(crate) fn forget(&mut self, superior: &Symbol) -> Vec<Record<S>> {
         self.over.extract(|over| over.superior == *superior);
         self.records.extract(|record| record.superior == *superior)
     }
 
-    pub(super) fn write_down(&mut self, ledger: &mut Ledger) {
+    pub(crate) fn write_down(&mut self, ledger: &mut Ledger) {
         self.records.write_down(RECORD, ledger);
         self.over.write_down(OVER, ledger);
     }
 
-    pub(super) fn recall(rows: &Rows) -> Result<Self, Unreadable> {
+    pub(crate) fn recall(rows: &Rows) -> Result<Self, Unreadable> {
         Ok(Self {
             records: Numbered::recall(RECORD, rows)?,
             over: Numbered::recall(OVER, rows)?,
