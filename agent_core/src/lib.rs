@@ -12,3 +12,4 @@ pub mod model;
 pub mod parallel;
 pub mod planner;
 pub mod protocol;
+pub mod service;
