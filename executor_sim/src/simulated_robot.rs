@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::convert::Infallible;
 
-use agent_core::model::{Domain, ExecutionModel, FactChange, Symbol, Time};
+use agent_core::model::{Action, Domain, ExecutionModel, FactChange, Symbol, Time};
 use agent_core::protocol::{
     ActionId, Durable, Input, Machine, Output, Reply, Row, Rows, Unreadable,
 };
@@ -86,6 +86,16 @@ impl SimulatedRobot {
     /// What goes wrong from now on.
     pub(crate) fn set_faults(&mut self, faults: Faults) {
         self.controller.set_faults(faults);
+    }
+
+    /// What it does, and whether it is stopping.
+    pub(crate) fn doing(&self) -> Option<(&Action, bool)> {
+        self.controller.doing()
+    }
+
+    /// How many suspended actions it keeps.
+    pub(crate) fn depth(&self) -> usize {
+        self.controller.depth()
     }
 
     /// Whether it has heard of that execution, and not forgotten it.

@@ -14,7 +14,7 @@ mod waiting;
 
 use std::collections::{BTreeSet, VecDeque};
 
-use agent_core::model::{Domain, ExecutionModel, FactChange, Symbol, Time};
+use agent_core::model::{Action, Domain, ExecutionModel, FactChange, Symbol, Time};
 use agent_core::protocol::Ledger;
 use agent_core::protocol::{Event, Happening, Input, Machine, Output, Reply, Report};
 
@@ -102,6 +102,17 @@ impl Controller {
     /// What goes wrong from now on.
     pub(crate) fn set_faults(&mut self, faults: Faults) {
         self.faults = faults;
+    }
+
+    /// What it does, and whether it is stopping.
+    pub(crate) fn doing(&self) -> Option<(&Action, bool)> {
+        let active = self.active.as_ref()?;
+        Some((&active.begun.job.action, active.is_stopping()))
+    }
+
+    /// How many suspended actions it keeps.
+    pub(crate) fn depth(&self) -> usize {
+        self.memory.depth()
     }
 
     /// Whether it has heard of that execution, and not forgotten it.

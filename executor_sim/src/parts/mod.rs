@@ -181,6 +181,11 @@ impl Part {
         self.memory.record(id).is_some()
     }
 
+    /// How many suspended things it keeps.
+    pub(crate) fn depth(&self) -> usize {
+        self.memory.depth()
+    }
+
     /// What it does, and whether it is coming to rest.
     pub(crate) fn doing(&self) -> Option<(&Record<Work>, bool)> {
         let active = self.active.as_ref()?;

@@ -8,7 +8,7 @@ use super::{EXECUTOR, ProgramError, read};
 use crate::{Controller, FaultRates, Faults};
 
 /// How often things go wrong with `--faults`: with one action in five.
-const RATES: FaultRates = FaultRates {
+pub(super) const RATES: FaultRates = FaultRates {
     late_stop_per_mille: 50,
     refused_suspension_per_mille: 50,
     failure_per_mille: 50,

@@ -1,6 +1,9 @@
-//! World and controller as programs: reality does not end when a robot's process does.
+//! World and controller as programs, and a room of several vehicles: reality does not end when a
+//! robot's process does.
 
 mod controller;
+mod room;
+mod shown_room;
 mod shown_world;
 mod world;
 
@@ -9,14 +12,16 @@ use agent_link::options::PlaceOptions;
 use clap::{Args, Subcommand};
 
 pub use controller::{ControllerArgs, run as run_controller, wiring as wiring_of_controller};
+pub use room::{RoomArgs, run as run_room, wiring as wiring_of_room};
+pub use shown_room::ShownRoom;
 pub use shown_world::ShownWorld;
 pub use world::{WorldArgs, run as run_world, wiring as wiring_of_world};
 
-use crate::{Floor, FloorError, SetupError, VocabularyError};
+use crate::{Floor, FloorError, RoomError, SetupError, VocabularyError};
 
 /// The controller's name.
 pub const EXECUTOR: &str = "executor";
-pub use crate::WORLD;
+pub use crate::{ROOM, WORLD};
 
 /// What is run.
 #[derive(Args, Clone, Debug)]
@@ -25,13 +30,15 @@ pub struct ExecutorArgs {
     part: Part,
 }
 
-/// The two halves of a simulated robot.
+/// The two halves of a simulated robot, and where several vehicles are.
 #[derive(Clone, Debug, Subcommand)]
 enum Part {
     /// The robot's controller: takes instructions, gives reports.
     Controller(ControllerArgs),
     /// The world: doors, the robot's body, and the clock of all.
     World(WorldArgs),
+    /// One reality for several vehicles, each made of parts, and the clock of all.
+    Room(RoomArgs),
 }
 
 /// Why a program could not start or could not go on.
@@ -49,12 +56,15 @@ pub enum ProgramError {
     /// No such robot on this floor.
     #[error("cannot set up the world: {0}")]
     Setup(#[from] SetupError),
+    /// No such vehicles here.
+    #[error("cannot set up the room: {0}")]
+    Room(#[from] RoomError),
     /// Connection, clock, loop.
     #[error(transparent)]
     Role(#[from] RoleError),
 }
 
-/// Runs one half until it is told to end.
+/// Runs one of them until it is told to end.
 ///
 /// # Errors
 /// If it cannot start or cannot go on.
@@ -62,6 +72,7 @@ pub async fn run(args: ExecutorArgs) -> Result<(), ProgramError> {
     match args.part {
         Part::Controller(args) => run_controller(args).await,
         Part::World(args) => run_world(args).await,
+        Part::Room(args) => run_room(args).await,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use agent_core::model::{FactChange, Symbol, Time};
+use agent_core::model::{Action, FactChange, Symbol, Time};
 use agent_core::protocol::ActionId;
 
 use crate::parts::{Part, PartName};
@@ -74,6 +74,28 @@ impl Mover {
     /// Whether it sees what is where it stands.
     pub fn has_eyes(&self) -> bool {
         self.parts.contains_key(&PartName::Eyes)
+    }
+
+    /// Whether nobody is there to drive it.
+    pub fn is_gone(&self) -> bool {
+        self.gone
+    }
+
+    /// What its parts do, and which of that is coming to rest.
+    pub fn doing(&self) -> impl Iterator<Item = (PartName, &Action, bool)> {
+        let base = self.base.as_ref().and_then(SimulatedRobot::doing);
+        let base = base.map(|(action, stopping)| (PartName::Base, action, stopping));
+        let parts = self.parts.iter().filter_map(|(name, part)| {
+            let (job, stopping) = part.doing()?;
+            Some((*name, &job.action, stopping))
+        });
+        base.into_iter().chain(parts)
+    }
+
+    /// How many suspended actions its parts keep.
+    pub fn suspended(&self) -> usize {
+        let base = self.base.as_ref().map_or(0, SimulatedRobot::depth);
+        base + self.parts.values().map(Part::depth).sum::<usize>()
     }
 
     /// When something is due.
