@@ -110,7 +110,7 @@ fn a_vehicle_without_memory_is_told_the_whole_truth_about_its_body() {
 }
 
 /// What the superior of a vehicle believes of its body is so.
-fn assert_true(rig: &Rig, vehicle: &str) {
+pub fn assert_true(rig: &Rig, vehicle: &str) {
     let name = Symbol::from(vehicle);
     let mover = rig.room.mover(vehicle).expect("it has a body");
     let places = ["entrance", "kitchen", "table1", "table2", "table3"];

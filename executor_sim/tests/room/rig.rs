@@ -1,6 +1,6 @@
 //! Superiors of the vehicles of one room, who apply what they are told to beliefs of their own.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use agent_core::language::{parse_atom, parse_fact_change};
 use agent_core::model::{Action, Belief, Fact, FactChange, Symbol, Time};
@@ -19,6 +19,7 @@ pub struct Rig {
     pub reports: Vec<(Time, Symbol, ActionId, Report)>,
     pub seen: Vec<(Time, Symbol, Vec<FactChange>, bool)>,
     pub rows: Rows,
+    pub over: BTreeSet<ActionId>,
     next: u64,
 }
 
@@ -43,6 +44,7 @@ impl Rig {
             reports: Vec::new(),
             seen: Vec::new(),
             rows: Rows::new(),
+            over: BTreeSet::new(),
             next: 0,
         };
         rig.drain();
@@ -138,6 +140,9 @@ impl Rig {
             match output {
                 Output::Report { to, id, report } => {
                     self.apply(&to, facts_of(&report));
+                    if report.is_end() {
+                        self.over.insert(id.clone());
+                    }
                     self.reports.push((self.now, to, id, report));
                 }
                 Output::Seen {
