@@ -95,7 +95,7 @@ impl<P: Planner> Agent<P> {
         // What has done what it was for protects nothing any more.
         let at_work = execution.done.is_none()
             && (!monitored || planner::missing_goal_state(&problem, purpose).is_some());
-        let broken = planner::broken_protection(&problem, purpose)
+        let broken = planner::broken_protection(&problem, &execution.step)
             .filter(|_| at_work)
             .map(|why| format!("{why}, which {purpose} protects"));
         let plans = &running.intention.plans;

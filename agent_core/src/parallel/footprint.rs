@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::model::{Action, Belief, Clause, Fact, FactChange, Symbol, Time};
-use crate::planner::{Plan, Problem, Step, adds_and_removes, hangs_on, number_of};
+use crate::planner::{
+    Plan, Problem, Step, adds_and_removes, hangs_on, instance, number_of, protected_by,
+};
 
 /// Facts, and whether they have to hold.
 pub type Literals = BTreeMap<Fact, bool>;
@@ -43,12 +45,10 @@ impl Footprint {
             .map(|reliance| (reliance.fact, reliance.wanted))
             .collect();
         let mut protects = Literals::new();
-        for (of, model) in models {
-            for clause in model.into_iter().flat_map(|model| &model.protected) {
-                if let Clause::Fact(wanted, pattern) = clause {
-                    let fact = crate::planner::instance(pattern, of);
-                    protects.extend(fact.map(|fact| (fact, *wanted)));
-                }
+        for clause in protected_by(problem, step) {
+            if let Clause::Fact(wanted, pattern) = clause {
+                let fact = instance(pattern, purpose);
+                protects.extend(fact.map(|fact| (fact, *wanted)));
             }
         }
         needs.extend(

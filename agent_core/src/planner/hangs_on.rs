@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::plan::Step;
 use super::state::{Bindings, Delta, View, bind_arguments};
-use super::{Problem, simulate};
+use super::{Problem, protected_by, simulate};
 use crate::model::{Belief, Clause, Effect, Fact, FactChange, Symbol};
 
 /// Of facts of which it can only be told by trying whether the plan hangs on them, so many are tried.
@@ -133,8 +133,7 @@ impl Reader<'_> {
         }
         // What has to hold while it runs is that of the action that it stands for.
         let purpose = step.purpose();
-        let protected = problem.model.actions.get(&purpose.name);
-        for clause in protected.into_iter().flat_map(|model| &model.protected) {
+        for clause in protected_by(problem, step) {
             if let Clause::Fact(..) = clause {
                 self.read(clause, &bind_arguments(&purpose.args, &[]), index);
             }

@@ -36,7 +36,7 @@ pub use plan::{Agenda, Origin, Plan, Step};
 pub use problem::Problem;
 pub use revise::{
     advance, broken_protection, effect_of, effect_of_suspension, instance, missing_goal_state,
-    number_of, project, simulate,
+    number_of, project, protected_by, simulate,
 };
 pub use ways::{adds_and_removes, ways_to};
 pub use what_if::{Considered, WhatIf, consider, if_mended};

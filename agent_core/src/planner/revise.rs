@@ -5,9 +5,12 @@ use std::collections::BTreeSet;
 use super::Problem;
 use super::cost::cost_of;
 use super::matching::for_each_binding;
+use super::network::Item;
 use super::plan::{Plan, Step};
 use super::state::{Delta, View, bind_arguments};
-use crate::model::{Action, Belief, Cost, Effect, FactChange, Number, Parameter, Pattern};
+use crate::model::{
+    Action, Belief, Change, Clause, Cost, Effect, FactChange, Number, Parameter, Pattern,
+};
 
 /// Carries a plan out in mind, from the present belief (Algorithm 1, step 3c).
 ///
@@ -82,16 +85,38 @@ fn changes(
         .collect()
 }
 
-/// In words, the first of an action's protected states that does not hold.
-pub fn broken_protection(problem: &Problem, action: &Action) -> Option<String> {
+/// What must hold as long as a step runs. A resumed action protects what it did before, but for what its
+/// suspension has taken away: a bottle that was set down at the edge no longer stands in its place.
+pub fn protected_by<'p>(problem: &'p Problem, step: &Step) -> Vec<&'p Clause> {
+    let Some(model) = problem.model.actions.get(&step.purpose().name) else {
+        return Vec::new();
+    };
+    let resumed = matches!(step.item, Item::Resume { .. });
+    let suspension = model.suspension.as_ref().filter(|_| resumed);
+    let taken_away = |clause: &&Clause| {
+        let Clause::Fact(wanted, pattern) = clause else {
+            return false;
+        };
+        let change = Change::from(pattern.clone());
+        suspension.is_some_and(|suspension| match wanted {
+            true => suspension.effect.remove.contains(&change),
+            false => suspension.effect.add.contains(&change),
+        })
+    };
+    let clauses = model.protected.iter();
+    clauses.filter(|clause| !taken_away(clause)).collect()
+}
+
+/// In words, the first of a step's protected states that does not hold.
+pub fn broken_protection(problem: &Problem, step: &Step) -> Option<String> {
     let delta = Delta::new();
     let view = View {
         problem,
         delta: &delta,
     };
-    let model = problem.model.actions.get(&action.name)?;
-    view.check(&model.protected, &bind_arguments(&action.args, &[]))
-        .err()
+    let bindings = bind_arguments(&step.purpose().args, &[]);
+    let mut protected = protected_by(problem, step).into_iter();
+    protected.find_map(|clause| view.check(std::slice::from_ref(clause), &bindings).err())
 }
 
 /// In words, the first of an action's goal states that does not hold.

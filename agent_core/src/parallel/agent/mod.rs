@@ -11,6 +11,8 @@ mod check;
 mod inputs;
 mod layers;
 mod memory;
+#[cfg(test)]
+mod tests;
 mod turns;
 
 use std::collections::{BTreeMap, VecDeque};

@@ -3,3 +3,5 @@
 mod against_oracle;
 mod examples;
 mod oracle;
+
+pub(super) use against_oracle::Chance;
