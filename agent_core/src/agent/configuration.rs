@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use super::Repair;
 use crate::model::{Domain, ExecutionModel, FactChange, Map, Symbol, Time};
 
 /// What an agent is made with. Two agents that differ in nothing else are at different levels.
@@ -82,6 +83,8 @@ pub struct Policy {
     pub expansions_before_stopping: u64,
     /// How many expansions are made between two looks at what has come in (decision 9).
     pub expansions_per_slice: u64,
+    /// Which plan is followed after a failure.
+    pub repair: Repair,
     /// How often an action may fail before it is no longer tried for a goal.
     pub attempts: u32,
     /// Whether it waits for leave before each action, and before it gives a goal up for want of a plan:
@@ -105,6 +108,7 @@ impl Default for Policy {
             // The museum's rough plans were seen to take from 19 to 155, alternatives included.
             expansions_before_stopping: 200,
             expansions_per_slice: 200,
+            repair: Repair::Cheapest,
             attempts: 3,
             asks_leave: false,
             most_waiting: MOST_WAITING,

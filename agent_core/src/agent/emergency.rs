@@ -223,6 +223,7 @@ impl<P: Planner> Agent<P> {
             set_aside: false,
             broken: None,
             surprised: false,
+            stage: Default::default(),
         });
         if !resumed {
             self.emit(Some(&goal), Happening::GoalStarted);

@@ -1,7 +1,7 @@
 //! Algorithm 2: planning and plan execution.
 
 use super::leave::Ready;
-use super::{Agent, Execution, Phase, Running};
+use super::{Agent, Execution, Phase, Repair, Running};
 use crate::model::{FactChange, Symbol, Time};
 use crate::planner::{self, Item, Planner, Step};
 use crate::protocol::{ActionId, Answer, Happening, Instruction, Output, Report};
@@ -51,6 +51,7 @@ impl<P: Planner> Agent<P> {
         let Some(running) = &mut self.running else {
             return;
         };
+        running.intention.failed = None;
         let goal = running.intention.goal.id.clone();
         let map = self.map_for(&step);
         let (id, executor) = match &step.item {
@@ -233,6 +234,9 @@ impl<P: Planner> Agent<P> {
     ) {
         if let Some(running) = &mut self.running {
             let purpose = execution.step.purpose().clone();
+            if self.configuration.policy.repair == Repair::Nearest {
+                running.intention.failed = Some((purpose.clone(), false));
+            }
             let failures = running.intention.failures.entry(purpose).or_default();
             *failures = failures.saturating_add(1);
         }

@@ -44,6 +44,8 @@ pub struct Intention {
     pub blocked_by: BTreeSet<Fact>,
     /// How often an action has failed.
     pub failures: BTreeMap<Action, u32>,
+    /// The one that has failed last, until something is begun, and whether it was told what that is.
+    pub failed: Option<(Action, bool)>,
     /// Why the last one did.
     pub last_failure: Option<String>,
     /// Executions of which the executor has lost the record.
@@ -70,6 +72,7 @@ impl Intention {
             fits: true,
             blocked_by: BTreeSet::new(),
             failures: BTreeMap::new(),
+            failed: None,
             last_failure: None,
             lost: BTreeSet::new(),
             done_once: BTreeSet::new(),
@@ -86,6 +89,7 @@ impl Intention {
     /// The agendas once `step` has been executed: what follows it, and every task that is still
     /// open, again.
     pub fn after(&mut self, step: &Step, may_be_repeated: bool) {
+        self.failed = None;
         if !may_be_repeated {
             let open =
                 std::iter::successors(step.frame.as_deref(), |frame| frame.parent.as_deref());

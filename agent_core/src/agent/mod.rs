@@ -23,6 +23,7 @@ mod monitor;
 mod moving;
 mod neighbour;
 mod planning;
+mod repair;
 mod stack;
 mod subplan;
 mod suspension;
@@ -38,6 +39,7 @@ pub use ended::Ended;
 pub use goal::Goal;
 pub use intention::{Intention, Record};
 pub use leave::Proposal;
+pub use repair::Repair;
 pub use stack::{ResumedBy, SuspendedGoal, SuspendedGoalStack};
 pub use waiting::WaitingGoals;
 
@@ -113,6 +115,8 @@ struct Running {
     broken: Option<String>,
     /// Facts have changed that no action of ours was to change: plan again when this action ends.
     surprised: bool,
+    /// How far planning is. Not written down: whoever plans again begins at the first stage.
+    stage: repair::Reached,
 }
 
 /// What is being waited for.

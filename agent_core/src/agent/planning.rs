@@ -1,5 +1,6 @@
 //! Steps 3 to 6 of Algorithm 2: planning, selection, and what becomes of suspended actions.
 
+use super::repair::Reached;
 use super::{Agent, Intention, Phase, WaitsFor};
 use crate::model::{Cost, Fact};
 use crate::planner::{self, Outcome, Plan, Planner, Problem};
@@ -10,24 +11,49 @@ const STILL_HOLDS: &str = "the suspended plan still holds";
 impl<P: Planner> Agent<P> {
     /// Step 3: begins to plan for the running goal, over everything that is left of it.
     pub(super) fn plan(&mut self) {
-        let problem = self.problem();
+        if let Some(running) = &mut self.running {
+            running.stage = Reached::default();
+        }
+        self.plan_in_stage();
+    }
+
+    fn plan_in_stage(&mut self) {
+        let Some((stage, _)) = self.stage() else {
+            return;
+        };
+        let problem = self.problem_in(&stage);
         if let Some(running) = &mut self.running {
             running.phase = Phase::Planning;
             self.planner.release(&running.intention.goal.id);
-            self.planner.begin(problem, &running.intention.agendas);
+            self.planner.begin(problem, &stage.agendas);
         }
     }
 
     /// Steps 4 to 6: plans were found, or it is proved that there are none.
     pub(super) fn planned(&mut self, outcome: Outcome) {
-        let problem = self.problem();
+        let Some((stage, is_last)) = self.stage() else {
+            return;
+        };
+        let problem = self.problem_in(&stage);
         let Some(running) = &mut self.running else {
             return;
         };
+        if outcome.plans.is_empty() && !is_last {
+            running.stage.place += 1;
+            running.stage.expanded += outcome.expanded;
+            return self.plan_in_stage();
+        }
         let kept = Kept::judged(&problem, std::mem::take(&mut running.intention.plans));
-        let Some((selected, alternatives)) = select(kept.valid(), outcome.plans) else {
+        // What was kept may be about any of the tasks above.
+        let still_valid = if stage.whole {
+            kept.valid()
+        } else {
+            Vec::new()
+        };
+        let Some((selected, alternatives)) = select(still_valid, outcome.plans) else {
             return self.no_plan(outcome.wanted.into_iter().collect());
         };
+        let expanded = running.stage.expanded + outcome.expanded_for_best;
         let how = kept.resumption(&selected);
         let same = how == Resumption::Continued;
         running.intention.fits = true;
@@ -38,18 +64,11 @@ impl<P: Planner> Agent<P> {
         let resumed = std::mem::take(&mut running.resumed);
         if resumed {
             let why = kept.why(how);
-            self.emit(
-                Some(&goal),
-                Happening::GoalResumed {
-                    how,
-                    why,
-                    expanded: outcome.expanded_for_best,
-                },
-            );
+            self.emit(Some(&goal), Happening::GoalResumed { how, why, expanded });
         }
         self.clear_what_is_not_resumed();
-        if !same {
-            self.tell_plan("it is the cheapest", outcome.expanded_for_best);
+        if let (why, true) = self.repaired(&stage, same) {
+            self.tell_plan(&why, expanded);
         }
         self.execute_next();
     }
@@ -65,7 +84,7 @@ impl<P: Planner> Agent<P> {
         let Some(first) = intention.plans.first_mut() else {
             return false;
         };
-        if !running.resumed || intention.cancelled.is_some() {
+        if !running.resumed || intention.cancelled.is_some() || intention.failed.is_some() {
             return false;
         }
         let Some(confirmed) = self.planner.confirm(first) else {
@@ -168,6 +187,7 @@ impl<P: Planner> Agent<P> {
             return;
         };
         running.intention.failures.clear();
+        running.intention.failed = None;
         running.intention.blocked_by.clear();
         self.emit(
             Some(&running.intention.goal.id),

@@ -90,6 +90,7 @@ impl<P: Planner> Agent<P> {
             set_aside: false,
             broken: None,
             surprised: true,
+            stage: Default::default(),
         });
         if !resumed {
             self.emit(Some(&goal), Happening::GoalStarted);

@@ -120,6 +120,16 @@ pub enum Happening {
         /// In words.
         why: String,
     },
+    /// An action has failed, and the nearest task above it that can be done otherwise is decomposed
+    /// anew; what was done before that task and what follows it stays as it is.
+    TaskRepaired {
+        /// Which.
+        task: Task,
+        /// How far it is above the action that has failed: one for the task that it was a part of.
+        levels: usize,
+        /// That action.
+        failed: Action,
+    },
     /// An executor was told to begin.
     ActionStarted {
         /// Which execution.

@@ -72,6 +72,11 @@ enum What {
         saving_s: f64,
         why: String,
     },
+    TaskRepaired {
+        task: Text<Atom>,
+        levels: usize,
+        failed: Text<Action>,
+    },
     ActionStarted {
         action_id: Text<ActionId>,
         action: Text<Action>,
@@ -260,6 +265,15 @@ fn to_wire(what: &protocol::Happening) -> What {
             saving_s: *saving_s,
             why: why.clone(),
         },
+        Core::TaskRepaired {
+            task,
+            levels,
+            failed,
+        } => What::TaskRepaired {
+            task: Text(task.clone()),
+            levels: *levels,
+            failed: Text(failed.clone()),
+        },
         Core::ActionStarted { id, action } => {
             let (action_id, action) = pair(id, action);
             What::ActionStarted { action_id, action }
@@ -373,6 +387,15 @@ fn from_wire(what: What) -> protocol::Happening {
                 .collect(),
             saving_s,
             why,
+        },
+        What::TaskRepaired {
+            task,
+            levels,
+            failed,
+        } => Core::TaskRepaired {
+            task: task.0,
+            levels,
+            failed: failed.0,
         },
         What::ActionStarted { action_id, action } => Core::ActionStarted {
             id: action_id.0,

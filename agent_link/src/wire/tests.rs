@@ -170,6 +170,11 @@ fn happening() -> impl Strategy<Value = Happening> {
                     why,
                 }
             }),
+        (atom(), any::<usize>(), atom()).prop_map(|(task, levels, failed)| H::TaskRepaired {
+            task,
+            levels,
+            failed
+        }),
         execution().prop_map(|(id, action)| H::ActionStarted { id, action }),
         execution().prop_map(|(id, action)| H::ActionStopping { id, action }),
         execution().prop_map(|(id, action)| H::ActionSuspended { id, action }),

@@ -111,6 +111,7 @@ pub(super) fn of_parent(goal: &str, what: &Happening, observable: &Observable) -
             why,
             ..
         } => line('∥', DIM, together(actions, beside, after, why)),
+        Happening::TaskRepaired { task, levels, .. } => line('≠', AGAIN, repaired(task, *levels)),
         Happening::ActionStarted { action, .. } => line('·', Style::new(), action.to_string()),
         Happening::ActionResumed { action, .. } => line('·', AGAIN, action.to_string()),
         Happening::ActionRolledBack { action, .. } => {
@@ -164,6 +165,7 @@ pub(super) fn of_child(task: &str, what: &Happening, spot: &str) -> Option<Line>
             DIM,
             format!("the plan of {task} no longer holds: {why}"),
         ),
+        Happening::TaskRepaired { task, levels, .. } => line('≠', AGAIN, repaired(task, *levels)),
         Happening::ActionFinished {
             action,
             failure: Some(failure),
@@ -195,6 +197,11 @@ fn together(
         text.push_str(&format!("; {action} after {}", texts(before)));
     }
     format!("{text} ({why})")
+}
+
+fn repaired(task: &Task, levels: usize) -> String {
+    let plural = if levels == 1 { "" } else { "s" };
+    format!("does {task} otherwise, {levels} level{plural} above what has failed")
 }
 
 /// What has become of a role's process.

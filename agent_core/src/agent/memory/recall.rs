@@ -237,6 +237,7 @@ impl<P: Planner> Agent<P> {
             fits: row.fits,
             blocked_by: row.blocked_by.into_iter().collect(),
             failures: row.failures.into_iter().collect(),
+            failed: row.failed,
             last_failure: row.last_failure,
             lost: row.lost.into_iter().collect(),
             done_once,
@@ -261,6 +262,7 @@ impl<P: Planner> Agent<P> {
                 set_aside,
                 broken,
                 surprised,
+                stage: Default::default(),
             })
         });
         Ok(Recalled {

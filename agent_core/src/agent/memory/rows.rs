@@ -86,6 +86,7 @@ pub(super) struct GoalRow {
     pub fits: bool,
     pub blocked_by: Vec<Fact>,
     pub failures: Vec<(Action, u32)>,
+    pub failed: Option<(Action, bool)>,
     pub last_failure: Option<String>,
     pub lost: Vec<ActionId>,
     pub done_once: Vec<u64>,

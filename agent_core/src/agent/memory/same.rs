@@ -37,6 +37,7 @@ impl Written {
                     set_aside,
                     broken,
                     surprised,
+                    stage: _,
                 } = running;
                 Pursuit {
                     phase: phase.clone(),
@@ -100,6 +101,7 @@ fn same_intention(a: &Intention, b: &Intention) -> bool {
         fits,
         blocked_by,
         failures,
+        failed,
         last_failure,
         lost,
         done_once,
@@ -114,6 +116,7 @@ fn same_intention(a: &Intention, b: &Intention) -> bool {
         && all(plans, &b.plans, same_plan)
         && *blocked_by == b.blocked_by
         && *failures == b.failures
+        && *failed == b.failed
         && *last_failure == b.last_failure
         && *lost == b.lost
         && *done_once == b.done_once
@@ -243,6 +246,7 @@ mod tests {
             set_aside: false,
             broken: None,
             surprised: false,
+            stage: Default::default(),
         }
     }
 
@@ -291,6 +295,7 @@ mod tests {
             |it| it.intention.fits = false,
             |it| it.intention.orphaned = true,
             |it| it.intention.cancelled = Some(String::new()),
+            |it| it.intention.failed = Some((Atom::new("go", []), true)),
             |it| it.intention.last_failure = Some(String::new()),
             |it| it.intention.blocked_by.extend([Atom::new("open", [])]),
             |it| it.intention.failures.extend([(Atom::new("go", []), 1)]),

@@ -244,6 +244,7 @@ fn goal_row(intention: &Intention, running: Option<&Running>, map: Option<u64>) 
         fits: intention.fits,
         blocked_by: intention.blocked_by.iter().cloned().collect(),
         failures: failures.map(|(a, times)| (a.clone(), *times)).collect(),
+        failed: intention.failed.clone(),
         last_failure: intention.last_failure.clone(),
         lost: intention.lost.iter().cloned().collect(),
         done_once: intention.done_once.iter().copied().collect(),

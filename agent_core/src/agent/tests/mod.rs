@@ -7,6 +7,7 @@ mod hold;
 mod reborn;
 mod restart;
 mod rig;
+mod task_trees;
 pub(in crate::agent) mod toy;
 mod uncertain;
 
