@@ -4,6 +4,7 @@ mod confirm;
 mod ended;
 pub(in crate::agent) mod history;
 mod hold;
+mod leave;
 mod reborn;
 mod restart;
 mod rig;

@@ -18,7 +18,7 @@ pub struct Rig {
     make: fn(u64, NaivePlanner) -> Agent<NaivePlanner>,
     pub now: Time,
     epoch: u64,
-    rows: Rows,
+    pub rows: Rows,
     /// All that was told to executors and not taken yet.
     pub instructed: Vec<(String, Instruction)>,
     pub reports: Vec<(ActionId, Report)>,

@@ -48,6 +48,7 @@ impl<P: Planner> ParallelAgent<P> {
             let problem = branch.present();
             if let Some(step) = branch.executing_step() {
                 let begun = self.underway.get(&slot);
+                let begun = begun.filter(|it| it.footprint.action == *step.action());
                 let footprint = begun.map(|it| it.footprint.clone());
                 let footprint = footprint.unwrap_or_else(|| Footprint::of(&problem, step));
                 let since = begun.map_or(Time::ZERO, |it| self.now.since(it.at));

@@ -1,6 +1,7 @@
 //! A carrier in a small restaurant, in virtual time.
 
 mod bistro;
+mod journal;
 mod random;
 mod room;
 mod serving;

@@ -162,6 +162,27 @@ impl<M: Driver> Room<M> {
         self.give(Input::Wake);
     }
 
+    /// What was written down.
+    pub fn rows(&self) -> &Rows {
+        &self.rows
+    }
+
+    /// A machine that remembers nothing.
+    pub fn made(&self) -> M {
+        (self.make)(self.epoch + 1)
+    }
+
+    /// Another machine goes on where that of another room was.
+    pub fn go_on_from(&mut self, other: Self, machine: M) {
+        let make = std::mem::replace(&mut self.make, Box::new(|_| unreachable!("it is replaced")));
+        *self = Self {
+            machine,
+            make,
+            epoch: other.epoch + 1,
+            ..other
+        };
+    }
+
     /// The job that ends first, the oldest among several.
     fn finish(&mut self) {
         let ending = self
