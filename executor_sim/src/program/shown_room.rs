@@ -1,5 +1,6 @@
 //! A room that can be looked at.
 
+use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -16,6 +17,11 @@ use crate::{Mover, Room};
 /// in the view `stack`.
 const SHOWN: usize = 16;
 
+/// What is seen is published, and may overtake a report that is sent again until it is acknowledged: then
+/// what the report says is older, and is believed last. So long after the last report everything is said
+/// once more, in seconds of everybody.
+const OVERTAKEN_S: f64 = 2.0;
+
 /// A [`Room`] and the clock that says where in its motions it is: the room itself has none, and
 /// between two events everything in it is a formula of the time.
 pub struct ShownRoom {
@@ -23,6 +29,8 @@ pub struct ShownRoom {
     clock: Clock,
     /// Something has happened since that was asked last.
     changed: AtomicBool,
+    /// When vehicles are told once more what they know.
+    again: BTreeMap<Symbol, Time>,
 }
 
 impl ShownRoom {
@@ -32,6 +40,16 @@ impl ShownRoom {
             room,
             clock,
             changed: AtomicBool::new(true),
+            again: BTreeMap::new(),
+        }
+    }
+
+    fn tell_again(&mut self, now: Time) {
+        let due = self.again.iter().filter(|(_, at)| **at <= now);
+        let due: Vec<Symbol> = due.map(|(vehicle, _)| vehicle.clone()).collect();
+        for vehicle in due {
+            self.again.remove(&vehicle);
+            self.room.tell_everything(&vehicle);
         }
     }
 
@@ -125,7 +143,9 @@ impl Machine for ShownRoom {
     type Out = Infallible;
 
     fn handle(&mut self, now: Time, input: Input<Infallible>) -> Option<Reply> {
-        self.room.handle(now, input)
+        let reply = self.room.handle(now, input);
+        self.tell_again(now);
+        reply
     }
 
     fn poll_output(&mut self) -> Option<Output<Infallible>> {
@@ -133,11 +153,16 @@ impl Machine for ShownRoom {
         if output.is_some() {
             self.changed.store(true, Ordering::Relaxed);
         }
+        if let Some(Output::Report { to, .. }) = &output {
+            let later = Time::from_secs(OVERTAKEN_S * self.clock.speed());
+            self.again.insert(to.clone(), self.clock.now() + later);
+        }
         output
     }
 
     fn wake_at(&self) -> Option<Time> {
-        self.room.wake_at()
+        let again = self.again.values().copied();
+        again.chain(self.room.wake_at()).min()
     }
 
     fn wind_down(&mut self, now: Time) {

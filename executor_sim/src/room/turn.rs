@@ -1,7 +1,7 @@
 //! What happens to a mover, and what its superior is told of it.
 
 use agent_core::model::{FactChange, Symbol};
-use agent_core::protocol::{Answer, Input, Instruction, Machine, Output, Reply, Report};
+use agent_core::protocol::{ActionId, Answer, Input, Instruction, Machine, Output, Reply, Report};
 use maps::Restaurant;
 
 use super::mover::wake_at;
@@ -162,9 +162,9 @@ impl Room {
                     report,
                     errand,
                 } => {
-                    let report = self.report_with_facts(vehicle, report, Some(&errand));
-                    self.tell_report(vehicle, &report);
-                    self.outputs.push_back(Output::Report { to, id, report });
+                    let truth = self.truth(vehicle);
+                    let report = self.with_truth(report, &truth, Some(&errand));
+                    self.pass_on(vehicle, (to, id, report), truth);
                 }
             }
         }
@@ -211,9 +211,9 @@ impl Room {
                             mover.ways.remove(&id);
                         }
                     }
-                    let report = self.report_with_facts(vehicle, report, None);
-                    self.tell_report(vehicle, &report);
-                    self.outputs.push_back(Output::Report { to, id, report });
+                    let truth = self.truth(vehicle);
+                    let report = self.with_truth(report, &truth, None);
+                    self.pass_on(vehicle, (to, id, report), truth);
                 }
                 // Said with everything else that the vehicle sees.
                 Output::Observed { .. } | Output::Seen { .. } => {
@@ -271,23 +271,22 @@ impl Room {
         }
     }
 
-    /// A report has told its superior already.
-    fn tell_report(&mut self, vehicle: &Symbol, report: &Report) {
-        let (Report::Success { .. }
-        | Report::Failure { .. }
-        | Report::Unknown { .. }
-        | Report::Suspended { .. }) = report
-        else {
-            return;
-        };
-        let facts = self.truth(vehicle);
+    /// Passes on a report. What is in it its superior needs not be told again.
+    fn pass_on(
+        &mut self,
+        vehicle: &Symbol,
+        (to, id, report): (Symbol, ActionId, Report),
+        truth: Vec<FactChange>,
+    ) {
+        let with_facts = report.is_end() || matches!(report, Report::Suspended { .. });
+        self.outputs.push_back(Output::Report { to, id, report });
         let (version, now) = (self.things.version, self.now);
-        if let Some(mover) = self.movers.get_mut(vehicle) {
+        if let Some(mover) = self.movers.get_mut(vehicle).filter(|_| with_facts) {
             mover.told_of = Some((version, mover.stands_at(now), mover.ahead.clone()));
-            mover.told.clone_from(&facts);
+            mover.told.clone_from(&truth);
             self.outputs.push_back(Output::Seen {
                 to: vehicle.clone(),
-                facts,
+                facts: truth,
                 reported: true,
             });
         }
@@ -295,48 +294,35 @@ impl Room {
 
     fn with_facts(&mut self, vehicle: &Symbol, answer: Answer, errand: Option<&Errand>) -> Answer {
         match answer {
-            Answer::Finished { outcome } => Answer::Finished {
-                outcome: self.report_with_facts(vehicle, outcome, errand),
-            },
+            Answer::Finished { outcome } => {
+                let truth = self.truth(vehicle);
+                let outcome = self.with_truth(outcome, &truth, errand);
+                Answer::Finished { outcome }
+            }
             other => other,
         }
     }
 
-    /// Everything that the vehicle knows, in place of what its part knows.
-    fn report_with_facts(
-        &mut self,
-        vehicle: &Symbol,
-        report: Report,
+    /// With everything that the vehicle knows. The base says more of the way that it was on.
+    fn with_truth(
+        &self,
+        mut report: Report,
+        truth: &[FactChange],
         errand: Option<&Errand>,
     ) -> Report {
-        let known = |own: Vec<FactChange>, truth: Vec<FactChange>| {
-            // The base says more of the way that it was on than of places in general.
-            own.into_iter().chain(truth).collect()
+        let said = match &report {
+            Report::Success { .. } => self.said_by(errand),
+            _ => Vec::new(),
         };
-        match report {
-            Report::Success { facts } => {
-                let mut facts: Vec<FactChange> = known(facts, self.truth(vehicle));
-                facts.extend(self.said_by(errand));
-                Report::Success { facts }
-            }
-            Report::Failure {
-                reason,
-                facts,
-                blocked_by,
-            } => Report::Failure {
-                reason,
-                facts: known(facts, self.truth(vehicle)),
-                blocked_by,
-            },
-            Report::Unknown { reason, facts } => Report::Unknown {
-                reason,
-                facts: known(facts, self.truth(vehicle)),
-            },
-            Report::Suspended { facts } => Report::Suspended {
-                facts: known(facts, self.truth(vehicle)),
-            },
-            other @ (Report::Started | Report::Progress { .. }) => other,
+        if let Report::Success { facts }
+        | Report::Failure { facts, .. }
+        | Report::Unknown { facts, .. }
+        | Report::Suspended { facts } = &mut report
+        {
+            facts.extend_from_slice(truth);
+            facts.extend(said);
         }
+        report
     }
 
     /// What a guest who was asked has said.
@@ -458,8 +444,8 @@ impl Room {
         self.tell_everything(name);
     }
 
-    /// Whatever it was told before.
-    fn tell_everything(&mut self, vehicle: &Symbol) {
+    /// Tells a vehicle once more all that it knows, whatever it was told before.
+    pub fn tell_everything(&mut self, vehicle: &Symbol) {
         let facts = self.truth(vehicle);
         if let Some(mover) = self.movers.get_mut(vehicle) {
             mover.told.clone_from(&facts);
