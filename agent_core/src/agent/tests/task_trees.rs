@@ -53,6 +53,9 @@ struct Method {
     subtasks: Vec<Do>,
 }
 
+/// Tasks that something is a part of, the nearest first, and what follows each.
+type Above = Vec<(Do, Vec<Do>)>;
+
 /// A domain as numbers.
 #[derive(Clone, Debug)]
 struct Tree {
@@ -391,7 +394,7 @@ impl<P: Planner> Case<P> {
     }
 
     /// The running action, as the oracle knows it.
-    fn running(&self) -> Option<(Item, Vec<Do>, Vec<(Do, Vec<Do>)>)> {
+    fn running(&self) -> Option<(Item, Vec<Do>, Above)> {
         let execution = self.agent.running.as_ref()?.execution()?;
         let step = &execution.step;
         let above = std::iter::successors(step.frame.as_ref(), |frame| frame.parent.as_ref());
@@ -551,9 +554,10 @@ impl<P: Planner> Case<P> {
             assert_eq!(
                 outcome,
                 expected,
-                "TREE_SEED={}\n{}",
+                "TREE_SEED={}\n{:#?}\n{}",
                 self.seed,
-                format!("{:#?}\n{}", self.events, self.tree.hddl())
+                self.events,
+                self.tree.hddl()
             );
             let still = self.agent.running_goal() == Some(pursued);
             if still && others != "[]" {
