@@ -95,6 +95,34 @@ impl Client {
         self.ask("verdict", &key, &wire::goal_to_wire(&goal)?).await
     }
 
+    /// Asks one agent in particular for a goal, as [`goal`](Self::goal) asks whoever takes goals.
+    pub async fn goal_to(
+        &self,
+        agent: &str,
+        mut goal: GoalRequest,
+    ) -> Result<Verdict, ClientError> {
+        if goal.id.is_none() {
+            goal.id = Some(new_id(&goal));
+        }
+        let keys = self.keys.agent(agent)?;
+        let key = match goal.urgency {
+            Urgency::Normal => keys.goal_normal(),
+            Urgency::Emergency => keys.goal_emergency(),
+        };
+        self.ask("verdict", &key, &wire::goal_to_wire(&goal)?).await
+    }
+
+    /// Suspends, resumes or cancels a goal of one agent in particular.
+    pub async fn command_to(
+        &self,
+        agent: &str,
+        command: &Command,
+    ) -> Result<CommandVerdict, ClientError> {
+        let text = wire::command_to_wire(command)?;
+        let key = self.keys.agent(agent)?.goal_command();
+        self.ask("verdict", &key, &text).await
+    }
+
     /// Suspends, resumes or cancels a goal.
     pub async fn command(&self, command: &Command) -> Result<CommandVerdict, ClientError> {
         let text = wire::command_to_wire(command)?;

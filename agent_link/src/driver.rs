@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use agent_core::model::{Symbol, Time};
 use agent_core::protocol::{Arrival, Durable, Input, Rows, Station};
+use agent_core::service;
 use agent_journal::Journal;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -15,7 +16,7 @@ use tokio::time::{Instant, Interval, MissedTickBehavior};
 use zenoh::Session;
 
 use crate::clock::Clock;
-use crate::incoming::ReplyTo;
+use crate::incoming::{ForAny, ReplyTo};
 use crate::inspect::Inspect;
 use crate::link::Link;
 use crate::mailbox;
@@ -56,6 +57,7 @@ where
     let local = Local {
         read: |value| wire::body("message", value),
         write: wire::to_value,
+        for_any: None,
     };
     run(machine, memory, wiring, session, clock, shutdown, local).await
 }
@@ -78,6 +80,34 @@ where
     let local = Local {
         read: |_| Err(WireError::malformed("message", "nothing is expected here")),
         write: |never: &Infallible| match *never {},
+        for_any: None,
+    };
+    run(machine, memory, wiring, session, clock, shutdown, local).await
+}
+
+/// As [`drive`], for one of a team of vehicles.
+///
+/// # Errors
+/// As [`drive`].
+pub async fn drive_vehicle<M>(
+    machine: M,
+    memory: Memory,
+    wiring: Wiring,
+    session: &Session,
+    clock: Clock,
+    shutdown: impl Future<Output = ()>,
+) -> Result<M, LinkError>
+where
+    M: Durable<In = service::Message, Out = service::Message> + Inspect,
+{
+    let local = Local {
+        read: wire::service_from_wire,
+        write: wire::service_to_wire,
+        for_any: Some(|goal| service::Message {
+            by: Symbol::from("user"),
+            at: Time::ZERO,
+            body: service::Body::Goal(goal),
+        }),
     };
     run(machine, memory, wiring, session, clock, shutdown, local).await
 }
@@ -86,6 +116,8 @@ where
 struct Local<M: Durable> {
     read: fn(Value) -> Result<M::In, WireError>,
     write: fn(&M::Out) -> Result<Value, WireError>,
+    /// How goals come in that are for nobody in particular, if not as others.
+    for_any: Option<ForAny<M::In>>,
 }
 
 async fn run<M>(
@@ -167,7 +199,7 @@ where
             Some(arrival) if last.is_some() && !matches!(arrival, mailbox::Arrival::Local(_)) => {
                 continue;
             }
-            Some(arrival) => match link.read(arrival, local.read) {
+            Some(arrival) => match link.read(arrival, local.read, local.for_any) {
                 Some(arrival) => arrival,
                 None => continue,
             },

@@ -26,6 +26,9 @@ pub(crate) enum ReplyTo {
     Witness(Question),
 }
 
+/// How a machine is told of a goal that whoever can do it best is to do.
+pub(crate) type ForAny<L> = fn(GoalRequest) -> L;
+
 /// What the station takes, and who waits for the response.
 type Taken<L> = (Arrival<L>, Option<ReplyTo>);
 
@@ -35,6 +38,7 @@ impl Link {
         &mut self,
         arrival: mailbox::Arrival,
         local: fn(Value) -> Result<L, WireError>,
+        for_any: Option<ForAny<L>>,
     ) -> Option<Taken<L>> {
         use mailbox::Arrival as Raw;
         match arrival {
@@ -62,7 +66,22 @@ impl Link {
                 Some((answered, None))
             }
             Raw::Delivered(by, line, seq) => Some((Arrival::Delivered { by, line, seq }, None)),
-            Raw::Goal(urgency, sender, asked) => self.read_goal(urgency, sender.as_deref(), asked),
+            Raw::Goal(urgency, sender, asked) => {
+                self.read_goal(urgency, sender.as_deref(), asked, for_any)
+            }
+            Raw::OwnGoal(urgency, asked) => self.read_goal(urgency, None, asked, None),
+            Raw::Said(payload) => {
+                let said = bounded(&payload, AGENT_LIMIT_BYTES)
+                    .and_then(|bytes| wire::read("message", &bytes))
+                    .and_then(local);
+                match said {
+                    Ok(said) => Some(nobody_waits(Input::Local(said))),
+                    Err(error) => {
+                        tracing::warn!("{error}");
+                        None
+                    }
+                }
+            }
             Raw::Command(question) => {
                 let command = question
                     .content("command", USER_LIMIT_BYTES)
@@ -176,6 +195,7 @@ impl Link {
         urgency: Urgency,
         sender: Option<&str>,
         asked: Asked,
+        for_any: Option<ForAny<L>>,
     ) -> Option<Taken<L>> {
         let (goal, question) = match asked {
             Asked::Put(payload) => {
@@ -192,10 +212,14 @@ impl Link {
         };
         match goal {
             Ok(goal) => match self.admit(sender, &goal) {
-                Ok(()) => Some((
-                    Arrival::Input(Input::Goal(goal.clone())),
-                    Some(ReplyTo::User(goal, question)),
-                )),
+                Ok(()) => {
+                    let input = match for_any {
+                        Some(for_any) => Input::Local(for_any(goal.clone())),
+                        None => Input::Goal(goal.clone()),
+                    };
+                    let sender = ReplyTo::User(goal, question);
+                    Some((Arrival::Input(input), Some(sender)))
+                }
                 Err(reason) => {
                     self.tell_user(&Verdict::refused(&goal, reason), question);
                     None

@@ -17,7 +17,15 @@ pub enum NameError {
 const MAX_NAME_LENGTH: usize = 64;
 
 /// The first chunks below the robot that are not agents. `world` and `executor` are agents.
-const RESERVED: [&str; 6] = ["goal", "facts", "event", "clock", "alive", "supervisor"];
+const RESERVED: [&str; 7] = [
+    "goal",
+    "facts",
+    "event",
+    "clock",
+    "alive",
+    "supervisor",
+    "team",
+];
 
 /// In `intermezzo/<robot>/goal/emergency/<sender>`.
 const SENDER_PLACE: usize = 4;
@@ -114,6 +122,11 @@ impl Keys {
         self.under("event")
     }
 
+    /// What vehicles say to all others of their team: published.
+    pub fn team(&self) -> String {
+        self.under("team")
+    }
+
     /// The world's clock: query.
     pub fn clock(&self) -> String {
         self.under("clock")
@@ -199,6 +212,21 @@ impl AgentKeys {
     /// Facts for superiors that did not cause them: published, and query for all that hold.
     pub fn facts(&self) -> String {
         self.under("facts")
+    }
+
+    /// Goals for this agent in particular that wait for their turn: put or query.
+    pub fn goal_normal(&self) -> String {
+        self.under("goal/normal")
+    }
+
+    /// Goals for this agent in particular that interrupt: put or query.
+    pub fn goal_emergency(&self) -> String {
+        self.under("goal/emergency")
+    }
+
+    /// Suspend, resume or cancel a goal of this agent's: query.
+    pub fn goal_command(&self) -> String {
+        self.under("goal/command")
     }
 
     /// One of the views into the agent: query.

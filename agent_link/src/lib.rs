@@ -67,6 +67,7 @@ mod incoming;
 mod inspect;
 mod inspect_agent;
 mod inspect_alternatives;
+mod inspect_vehicle;
 mod keys;
 mod limit_options;
 mod link;
@@ -88,11 +89,14 @@ mod writer;
 pub use agent_journal as journal;
 pub use client::{Client, ClientError, Events};
 pub use clock::{Clock, ClockError, ClockService, epoch_now};
-pub use driver::{Memory, drive, drive_agent};
+pub use driver::{Memory, drive, drive_agent, drive_vehicle};
 pub use inspect::{Inspect, View};
 pub use keys::{AgentKeys, Keys, NameError};
 pub use process::{interrupted, runtime, stdin_ended};
 pub use quota::{Limits, Rate};
-pub use role::{RoleError, drive_agent_in_world, drive_in_world, log_to_stderr, run_role};
+pub use role::{
+    RoleError, drive_agent_in_world, drive_in_world, drive_vehicle_in_world, log_to_stderr,
+    run_role,
+};
 pub use session::Session;
 pub use wiring::{LinkError, Wiring, next_epoch};

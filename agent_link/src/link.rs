@@ -194,6 +194,11 @@ impl Link {
                 let line = wire::numbered_event_to_line(&self.wiring.name, Some(number), &event)?;
                 self.publisher.put(self.wiring.keys.event(), line);
             }
+            Effect::Local(message) if self.wiring.in_team => {
+                let said = local_as_value(&message.body)?;
+                self.publisher
+                    .urgent(self.wiring.keys.team(), said.to_string());
+            }
             Effect::Local(message) => match &self.to_elsewhere {
                 Some(sender) => {
                     let body = local_as_value(&message.body)?;

@@ -44,6 +44,10 @@ pub(crate) enum Arrival {
     Local(Question),
     /// From a user, who may have said who that is.
     Goal(Urgency, Option<Arc<str>>, Asked),
+    /// From a user, for this machine in particular.
+    OwnGoal(Urgency, Asked),
+    /// From one of the team to all.
+    Said(ZBytes),
     /// From a user.
     Command(Question),
     /// From a user or a sensor.
@@ -144,6 +148,24 @@ impl Mailbox {
             }
             let key = keys.goal_command();
             mailbox.asked(key, users.clone(), Arrival::Command).await?;
+        }
+        if wiring.takes_own_goals {
+            for (key, urgency) in [
+                (own.goal_normal(), Urgency::Normal),
+                (own.goal_emergency(), Urgency::Emergency),
+            ] {
+                let put = move |put| Arrival::OwnGoal(urgency, Asked::Put(put));
+                mailbox.put(key.clone(), users.clone(), put).await?;
+                let query = move |query| Arrival::OwnGoal(urgency, Asked::Query(query));
+                mailbox.asked(key, users.clone(), query).await?;
+            }
+            let key = own.goal_command();
+            mailbox.asked(key, users.clone(), Arrival::Command).await?;
+        }
+        if wiring.in_team {
+            mailbox
+                .put(keys.team(), agents.clone(), Arrival::Said)
+                .await?;
         }
         if wiring.takes_facts {
             let put = |put| Arrival::Facts(Asked::Put(put));

@@ -8,12 +8,13 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use agent_core::protocol::Durable;
+use agent_core::service::Message;
 use agent_journal::JournalError;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::clock::{Clock, ClockError};
-use crate::driver::{Memory, drive, drive_agent};
+use crate::driver::{Memory, drive, drive_agent, drive_vehicle};
 use crate::inspect::Inspect;
 use crate::keys::NameError;
 use crate::options::LinkOptions;
@@ -28,7 +29,7 @@ const PATIENCE_WITH_THE_WORLD: Duration = Duration::from_secs(60);
 /// own words; it also complains of every attempt to connect, and when one answer was enough and a
 /// second one comes. `RUST_LOG=warn` shows it all.
 const DEFAULT_FILTER: &str = "off,agent_core=warn,agent_link=warn,child_agent=warn,\
-    executor_sim=warn,intermezzo=warn,maps=warn,parent_agent=warn";
+    executor_sim=warn,intermezzo=warn,maps=warn,parent_agent=warn,vehicle=warn";
 
 /// Why a role could not start or could not go on.
 #[derive(Debug, thiserror::Error)]
@@ -116,6 +117,28 @@ where
 {
     in_world(options, wiring, async |wiring, session, clock, shutdown| {
         drive(machine, memory, wiring, session, clock, shutdown).await?;
+        Ok(())
+    })
+    .await
+}
+
+/// As [`drive_agent_in_world`], for one of a team of vehicles, which is made once it is known how fast
+/// the world runs.
+///
+/// # Errors
+/// If there is no connection, no world, or another process of this name.
+pub async fn drive_vehicle_in_world<M>(
+    make: impl FnOnce(f64) -> M,
+    memory: Memory,
+    wiring: Wiring,
+    options: &LinkOptions,
+) -> Result<(), RoleError>
+where
+    M: Durable<In = Message, Out = Message> + Inspect,
+{
+    in_world(options, wiring, async |wiring, session, clock, shutdown| {
+        let vehicle = make(clock.speed());
+        drive_vehicle(vehicle, memory, wiring, session, clock, shutdown).await?;
         Ok(())
     })
     .await

@@ -23,6 +23,11 @@ pub struct Wiring {
     pub executors: Vec<String>,
     /// Whether users' goals and commands are for it. One machine of a robot takes them.
     pub takes_goals: bool,
+    /// Whether it takes users' goals and commands on keys of its own, beside those for the robot.
+    pub takes_own_goals: bool,
+    /// Whether it is one of a team: then what it says to nobody in particular is said to all of them, and
+    /// may be lost.
+    pub in_team: bool,
     /// How much users may ask for.
     pub limits: Limits,
     /// Whether it wants to know what users and sensors say about the world.
@@ -47,6 +52,8 @@ impl Wiring {
             epoch,
             executors: Vec::new(),
             takes_goals: false,
+            takes_own_goals: false,
+            in_team: false,
             limits: Limits::default(),
             takes_facts: false,
             local_in: None,

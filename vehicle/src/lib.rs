@@ -3,6 +3,9 @@
 //! One level, from place to place. A vehicle plans and acts, gives tasks to the others and takes theirs,
 //! and shares what it sees ([`agent_core::vehicle`]); its body is in the room that all of them are in.
 
+#[cfg(feature = "process")]
+pub mod program;
+
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 

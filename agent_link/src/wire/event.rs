@@ -1,6 +1,6 @@
 //! Events: one flat JSON object a line.
 
-use agent_core::model::{Action, Atom, Cost, FactChange, Symbol, Time};
+use agent_core::model::{Action, Atom, Cost, Fact, FactChange, Symbol, Task, Time};
 use agent_core::protocol::{self, ActionId, Event, Urgency};
 use serde::{Deserialize, Serialize};
 
@@ -111,6 +111,30 @@ enum What {
     },
     NeighbourBack {
         name: String,
+    },
+    TaskOffered {
+        what: Text<Task>,
+        urgency: UrgencyWord,
+    },
+    TaskGiven {
+        what: Text<Task>,
+        to: String,
+    },
+    TaskEnded {
+        what: Text<Task>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        by: Option<String>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        failure: Option<String>,
+    },
+    VehicleLost {
+        name: String,
+        held: Vec<Text<Fact>>,
+        tasks: Vec<Text<Task>>,
+    },
+    FactsTold {
+        by: String,
+        changes: Vec<Text<FactChange>>,
     },
     BeliefChanged {
         changes: Vec<Text<FactChange>>,
@@ -316,6 +340,31 @@ fn to_wire(what: &protocol::Happening) -> What {
         Core::NeighbourBack { name } => What::NeighbourBack {
             name: name.to_string(),
         },
+        Core::TaskOffered { what, urgency } => What::TaskOffered {
+            what: Text(what.clone()),
+            urgency: match urgency {
+                Urgency::Normal => UrgencyWord::Normal,
+                Urgency::Emergency => UrgencyWord::Emergency,
+            },
+        },
+        Core::TaskGiven { what, to } => What::TaskGiven {
+            what: Text(what.clone()),
+            to: to.to_string(),
+        },
+        Core::TaskEnded { what, by, failure } => What::TaskEnded {
+            what: Text(what.clone()),
+            by: by.as_ref().map(ToString::to_string),
+            failure: failure.clone(),
+        },
+        Core::VehicleLost { name, held, tasks } => What::VehicleLost {
+            name: name.to_string(),
+            held: to_text(held),
+            tasks: to_text(tasks),
+        },
+        Core::FactsTold { by, changes } => What::FactsTold {
+            by: by.to_string(),
+            changes: changes_to_text(changes),
+        },
         Core::BeliefChanged { changes } => What::BeliefChanged {
             changes: changes_to_text(changes),
         },
@@ -432,6 +481,31 @@ fn from_wire(what: What) -> protocol::Happening {
         },
         What::NeighbourLost { name } => Core::NeighbourLost { name: name.into() },
         What::NeighbourBack { name } => Core::NeighbourBack { name: name.into() },
+        What::TaskOffered { what, urgency } => Core::TaskOffered {
+            what: what.0,
+            urgency: match urgency {
+                UrgencyWord::Normal => Urgency::Normal,
+                UrgencyWord::Emergency => Urgency::Emergency,
+            },
+        },
+        What::TaskGiven { what, to } => Core::TaskGiven {
+            what: what.0,
+            to: to.into(),
+        },
+        What::TaskEnded { what, by, failure } => Core::TaskEnded {
+            what: what.0,
+            by: by.map(Into::into),
+            failure,
+        },
+        What::VehicleLost { name, held, tasks } => Core::VehicleLost {
+            name: name.into(),
+            held: from_text(held),
+            tasks: from_text(tasks),
+        },
+        What::FactsTold { by, changes } => Core::FactsTold {
+            by: by.into(),
+            changes: from_text(changes),
+        },
         What::BeliefChanged { changes } => Core::BeliefChanged {
             changes: from_text(changes),
         },

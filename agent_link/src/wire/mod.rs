@@ -10,6 +10,7 @@ mod event;
 mod facts;
 mod goal;
 mod instruction;
+mod service;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -27,6 +28,7 @@ pub use goal::{
     CommandVerdict, Verdict, command_from_user, command_to_wire, goal_from_user, goal_to_wire,
 };
 pub use instruction::{Answer, Instruction, Map, Report, ReportBody};
+pub use service::{service_from_wire, service_to_wire};
 pub use text::Text;
 
 /// The version that this program writes, and the only one that it reads.

@@ -137,6 +137,29 @@ fn happening() -> impl Strategy<Value = Happening> {
         atom().prop_map(|atom| H::NeighbourLost { name: atom.name }),
         atom().prop_map(|atom| H::NeighbourBack { name: atom.name }),
         vec(atom(), 0..3).prop_map(|blocked_by| H::GoalBlocked { blocked_by }),
+        atom().prop_map(|what| H::TaskOffered {
+            what,
+            urgency: agent_core::protocol::Urgency::Emergency
+        }),
+        (atom(), atom()).prop_map(|(what, to)| H::TaskGiven { what, to: to.name }),
+        (atom(), option::of(atom()), option::of(words())).prop_map(|(what, by, failure)| {
+            H::TaskEnded {
+                what,
+                by: by.map(|by| by.name),
+                failure,
+            }
+        }),
+        (atom(), vec(atom(), 0..3), vec(atom(), 0..3)).prop_map(|(name, held, tasks)| {
+            H::VehicleLost {
+                name: name.name,
+                held,
+                tasks,
+            }
+        }),
+        (atom(), vec(change(), 0..3)).prop_map(|(by, changes)| H::FactsTold {
+            by: by.name,
+            changes
+        }),
         (
             vec(atom(), 0..4),
             cost(),

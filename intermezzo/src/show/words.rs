@@ -125,6 +125,32 @@ pub(super) fn of_parent(goal: &str, what: &Happening, observable: &Observable) -
         Happening::RecordCleared { action, .. } => {
             line('×', DIM, format!("will not resume {action}"))
         }
+        Happening::TaskOffered { what, urgency } => {
+            let urgent = match urgency {
+                Urgency::Normal => "",
+                Urgency::Emergency => ", urgent",
+            };
+            line('?', DIM, format!("who can do {what}{urgent}?"))
+        }
+        Happening::TaskGiven { what, to } => line('→', DIM, format!("{to} gets {what}")),
+        Happening::TaskEnded { what, by, failure } => match (by, failure) {
+            (Some(by), _) => line('✓', DIM, format!("{what} was done by {by}")),
+            (None, Some(why)) => line('✗', BAD, format!("{what} was given up: {why}")),
+            (None, None) => line('✓', DIM, format!("{what} needs no doing any more")),
+        },
+        Happening::VehicleLost { name, held, tasks } => {
+            let held = match held.as_slice() {
+                [] => String::new(),
+                held => format!("; it has {}", texts(held)),
+            };
+            let tasks = match tasks.as_slice() {
+                [] => String::new(),
+                tasks => format!("; it was to do {}", texts(tasks)),
+            };
+            line('!', BAD, format!("{name} is gone{held}{tasks}"))
+        }
+        // What of it is worth telling is told as a change of the belief.
+        Happening::FactsTold { .. } => return None,
         Happening::BeliefChanged { changes } => line('i', ASIDE, news(changes, observable)?),
         Happening::ActionStopping { .. }
         | Happening::ActionSuspended { .. }
