@@ -145,6 +145,7 @@ Examples:
   intermezzo up                                     the museum, in real time
   intermezzo up --speed 10 --start n40              ten times as fast, from the main hall
   intermezzo up my/place --robot anna               a place of one's own, a robot of that name
+  intermezzo up maps/restaurant --speed 5           a room and its vehicles, as room.toml says
   intermezzo up --state robot-state                 keep goals and places there: go on where it was
   intermezzo up --scenario story.toml --until-done  play a story, then end
 
@@ -195,6 +196,9 @@ pub(crate) struct UpArgs {
     pub(crate) hang_limit: Duration,
     #[command(flatten)]
     pub(crate) limits: LimitOptions,
+    /// In a restaurant: so many goals each vehicle works on at once; 1 is one after another.
+    #[arg(long, value_name = "N")]
+    pub(crate) together: Option<std::num::NonZeroUsize>,
     /// Have some actions fail, stop late, refuse to stop or be slow: which ones, this seed decides.
     #[arg(long, value_name = "SEED")]
     pub(crate) faults: Option<u64>,
@@ -255,6 +259,9 @@ pub(crate) struct GoalArgs {
     /// Return when the goal has ended.
     #[arg(long, short)]
     pub(crate) wait: bool,
+    /// In a restaurant: which vehicle is to do it. Without, whoever can do it best.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) vehicle: Option<String>,
     /// With --wait: for how many seconds to wait for a robot that is down.
     #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
     pub(crate) patience: Duration,
@@ -269,6 +276,9 @@ pub(crate) struct GoalArgs {
 pub(crate) struct CommandArgs {
     /// The goal's name, as `intermezzo goal` has answered and `intermezzo status` shows.
     pub(crate) goal: String,
+    /// In a restaurant: the vehicle that the goal was given to, if it was given to one in particular.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) vehicle: Option<String>,
     /// Answer with JSON.
     #[arg(long)]
     pub(crate) json: bool,
@@ -393,6 +403,10 @@ pub(crate) enum RoleCommand {
     Executor(executor_sim::program::ControllerArgs),
     /// The world.
     World(executor_sim::program::WorldArgs),
+    /// The room of a restaurant.
+    Room(executor_sim::program::RoomArgs),
+    /// A vehicle of a restaurant.
+    Vehicle(Box<vehicle::program::VehicleArgs>),
     /// The machines of one kind of many robots.
     Host(crate::experiment::fleet::HostArgs),
 }

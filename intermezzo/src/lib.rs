@@ -85,6 +85,12 @@ async fn run_role(role: RoleCommand) -> Result<Exit, Failure> {
         RoleCommand::World(args) => executor_sim::program::run_world(args)
             .await
             .map_err(Failure::failed)?,
+        RoleCommand::Room(args) => executor_sim::program::run_room(args)
+            .await
+            .map_err(Failure::failed)?,
+        RoleCommand::Vehicle(args) => vehicle::program::run(*args)
+            .await
+            .map_err(Failure::failed)?,
         RoleCommand::Host(args) => experiment::fleet::host(args).await?,
     }
     Ok(Exit::Done)

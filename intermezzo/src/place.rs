@@ -2,12 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use maps::{Finding, Place};
+use maps::{Finding, Place, Restaurant};
 
 use crate::exit::Failure;
 
 /// The name that means the place that is built in.
 const MUSEUM: &str = "museum";
+/// The same of a restaurant.
+const RESTAURANT: &str = "restaurant";
+/// A folder with this is a restaurant.
+const ROOM: &str = "room.toml";
 
 /// The place that was typed: its folder, if it is not built in, and what is in it.
 ///
@@ -31,6 +35,31 @@ pub(crate) fn read(typed: &Path) -> Result<(Option<PathBuf>, Place), Failure> {
         .advice(advice)
     })?;
     Ok((Some(typed.to_owned()), place))
+}
+
+/// The restaurant that was typed: its folder, if it is not built in, and what is in it. `None` if it is
+/// the place of a single robot.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub(crate) fn read_restaurant(
+    typed: &Path,
+) -> Result<Option<(Option<PathBuf>, Restaurant)>, Failure> {
+    if typed == Path::new(RESTAURANT) && !typed.is_dir() {
+        return Ok(Some((None, Restaurant::of_the_paper())));
+    }
+    if !typed.join(ROOM).is_file() {
+        return Ok(None);
+    }
+    let restaurant = Restaurant::read(typed).map_err(|findings| {
+        Failure::bad_input(format_args!(
+            "the restaurant {} is not in order:\n{}",
+            typed.display(),
+            lines(&findings)
+        ))
+        .advice("see maps/restaurant/README.md for what belongs in it")
+    })?;
+    Ok(Some((Some(typed.to_owned()), restaurant)))
 }
 
 /// A finding a line.

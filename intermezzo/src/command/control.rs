@@ -22,7 +22,11 @@ pub(crate) async fn command(
 ) -> Result<Exit, Failure> {
     let connection = Connection::open(&args.target).await?;
     let command = command(args.goal.as_str().into());
-    let verdict = connection.client.command(&command).await;
+    let client = &connection.client;
+    let verdict = match &args.vehicle {
+        None => client.command(&command).await,
+        Some(vehicle) => client.command_to(vehicle, &command).await,
+    };
     let verdict = connection.close(verdict.map_err(unanswered)).await?;
     let words = format!("{} {done}", args.goal);
     Ok(tell(

@@ -32,6 +32,8 @@ pub(crate) async fn run(args: DemoArgs) -> Result<Exit, Failure> {
         hang_limit: crate::robot::HANG_LIMIT,
         security: None,
         limits: LimitOptions::default(),
+        vehicles: Vec::new(),
+        together: None,
     };
     let performance = Performance {
         scenario: Some(scenario),

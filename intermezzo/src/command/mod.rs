@@ -12,5 +12,6 @@ pub(crate) mod scale;
 pub(crate) mod secure;
 pub(crate) mod status;
 pub(crate) mod svg;
+mod team;
 pub(crate) mod up;
 pub(crate) mod watch;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use agent_link::{Client, ClientError, View};
-use executor_sim::program::WORLD;
+use executor_sim::program::{ROOM, WORLD};
 use serde_json::{Map, Value, json};
 
 use crate::cli::StatusArgs;
@@ -68,7 +68,9 @@ async fn look_at_all(connection: &Connection, plans: bool) -> Result<Seen, Failu
     }
     let processes = processes.map_or(Value::Null, |mut status| status["roles"].take());
     // A robot with agents of other names may well do without those of these.
-    if names.iter().all(|name| ORDER.contains(&name.as_str())) {
+    if names.iter().all(|name| ORDER.contains(&name.as_str()))
+        && !processes.get(ROOM).is_some_and(Value::is_object)
+    {
         for name in ORDER {
             agents.entry(name).or_insert(Value::Null);
         }
@@ -166,6 +168,10 @@ fn agent(text: &mut String, name: &str, views: &Value, with_plans: bool) {
         world(text, views);
         return;
     }
+    if name == ROOM {
+        room(text, views);
+        return;
+    }
     let status = &views["status"];
     let _ = write!(text, "{BOLD}{name:<9}{BOLD:#}");
     let running = &status["running"];
@@ -197,6 +203,12 @@ fn agent(text: &mut String, name: &str, views: &Value, with_plans: bool) {
             names => format!("{} is not there", names.replace(' ', " and ")),
         };
         let _ = writeln!(text, "         {ASIDE}‖ holding: {missing}{ASIDE:#}");
+    }
+    for other in list(&status["branches"]).iter().skip(1) {
+        let goal = goal_words(&other["running"]).unwrap_or_default();
+        let action = other["action"]["action"].as_str();
+        let doing = action.map_or_else(|| other["phase"].as_str().unwrap_or_default(), |it| it);
+        let _ = writeln!(text, "         {GOOD}▶{GOOD:#} {goal}: {doing}");
     }
     if with_plans {
         text.push_str(&of_goal(views, &running["id"]));
@@ -235,7 +247,19 @@ fn agent(text: &mut String, name: &str, views: &Value, with_plans: bool) {
             text.push_str(&of_goal(views, &aside["id"]));
         }
     }
+    tasks(text, name, &status["tasks"]);
     belief(text, &views["belief"]);
+}
+
+/// What a vehicle has published.
+fn tasks(text: &mut String, name: &str, tasks: &Value) {
+    for task in list(tasks).iter().filter(|task| task["by"] == name) {
+        let what = task["what"].as_str().unwrap_or_default();
+        let _ = match task["to"].as_str() {
+            Some(to) => writeln!(text, "         {DIM}→{DIM:#} {to} has {what}"),
+            None => writeln!(text, "         {DIM}?{DIM:#} nobody has {what} yet"),
+        };
+    }
 }
 
 /// The alternatives for the goal of this name.
@@ -361,6 +385,12 @@ fn world(text: &mut String, views: &Value) {
         },
     };
     let _ = writeln!(text, "           {DIM}{closed}{DIM:#}");
+}
+
+fn room(text: &mut String, views: &Value) {
+    let status = &views["status"];
+    let at_s = status["t_s"].as_f64().unwrap_or_default();
+    let _ = writeln!(text, "{BOLD}{ROOM:<9}{BOLD:#}at {at_s:.1} s");
 }
 
 fn list(value: &Value) -> &[Value] {

@@ -6,6 +6,7 @@ use agent_core::model::Time;
 use agent_link::{Client, View};
 use maps::{Place, Site};
 
+use super::team;
 use crate::cli::UpArgs;
 use crate::exit::{Exit, Failure};
 use crate::place;
@@ -26,6 +27,9 @@ pub(super) struct Performance {
 }
 
 pub(crate) async fn run(args: UpArgs) -> Result<Exit, Failure> {
+    if let Some((folder, restaurant)) = place::read_restaurant(&args.place)? {
+        return team::run(args, folder, &restaurant).await;
+    }
     let (folder, place) = place::read(&args.place)?;
     if place.site().node(&args.start).is_none() {
         return Err(no_such_node(&args.start, place.site()));
@@ -49,6 +53,8 @@ pub(crate) async fn run(args: UpArgs) -> Result<Exit, Failure> {
         hang_limit: args.hang_limit,
         security: args.security,
         limits: args.limits,
+        vehicles: Vec::new(),
+        together: None,
     };
     let performance = Performance {
         scenario,

@@ -8,9 +8,11 @@ mod supervisor;
 mod watched;
 
 use std::collections::{BTreeMap, VecDeque};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use agent_core::model::Symbol;
 use agent_link::options::{LimitOptions, PlannerOptions};
 use agent_link::registry::{Entry, Registry, RegistryError};
 use agent_link::session::{self, Role, SessionError};
@@ -64,9 +66,26 @@ pub struct Setup {
     pub security: Option<PathBuf>,
     /// How much users may ask for.
     pub limits: LimitOptions,
+    /// The vehicles of a restaurant: then there are a room and these, and no robot.
+    pub vehicles: Vec<Symbol>,
+    /// How many goals each vehicle works on at once, if not as many as it would.
+    pub together: Option<NonZeroUsize>,
 }
 
 impl Setup {
+    /// What there is to be looked after.
+    pub fn roles(&self) -> Vec<RoleKind> {
+        let all: Vec<RoleKind> = if self.vehicles.is_empty() {
+            RoleKind::ALL.into()
+        } else {
+            let vehicles = self.vehicles.iter().cloned().map(RoleKind::Vehicle);
+            std::iter::once(RoleKind::Room).chain(vehicles).collect()
+        };
+        let here = all.into_iter();
+        here.filter(|role| !self.world_elsewhere || !role.is_reality())
+            .collect()
+    }
+
     /// The zenoh settings of a role, or of this process.
     fn zenoh_config_of(&self, name: &str) -> Option<PathBuf> {
         match &self.security {
@@ -251,7 +270,9 @@ impl Robot {
             let clock = Clock::of_world(session, &keys, PATIENCE_WITH_THE_CLOCK)
                 .await
                 .map_err(Failure::failed)?;
-            alive::until_it_knows_where_it_stands(session, &keys).await?;
+            if setup.vehicles.is_empty() {
+                alive::until_it_knows_where_it_stands(session, &keys).await?;
+            }
             Ok((clock, processes))
         };
         let ready = tokio::select! {
@@ -296,7 +317,7 @@ async fn all_ready(
     news: &mut mpsc::UnboundedReceiver<RoleNews>,
     earlier: &mut VecDeque<RoleNews>,
 ) -> Result<BTreeMap<RoleKind, u32>, Failure> {
-    let all = RoleKind::ALL.len() - usize::from(setup.world_elsewhere);
+    let all = setup.roles().len();
     let mut processes = BTreeMap::new();
     let coming = async {
         while processes.len() < all {
@@ -307,7 +328,7 @@ async fn all_ready(
                 RoleNews::Ready {
                     role, pid, after, ..
                 } => {
-                    processes.insert(*role, *pid);
+                    processes.insert(role.clone(), *pid);
                     if after.is_none() {
                         // That all have started is told at once.
                         continue;

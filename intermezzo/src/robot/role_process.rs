@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
 
+use agent_core::model::Symbol;
 use tokio::io::{AsyncBufReadExt, BufReader};
 use tokio::process::{Child, ChildStdin, Command};
 use tokio::sync::mpsc;
@@ -18,8 +19,8 @@ use crate::exit::Failure;
 /// says good-bye.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// The roles of a robot.
-#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+/// A role of a robot, or of a restaurant.
+#[derive(Clone, Debug, Eq, Ord, PartialEq, PartialOrd)]
 pub enum RoleKind {
     /// Doors, body, clock.
     World,
@@ -29,24 +30,38 @@ pub enum RoleKind {
     Child,
     /// The area level.
     Parent,
+    /// The room that all vehicles of a restaurant are in, and its clock.
+    Room,
+    /// A vehicle of a restaurant.
+    Vehicle(Symbol),
 }
 
 impl RoleKind {
-    /// All of them, from below.
+    /// Those of a robot, from below.
     pub const ALL: [Self; 4] = [Self::World, Self::Executor, Self::Child, Self::Parent];
 
-    /// The one of that name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name)
-    }
-
     /// Its name, as in the keys.
-    pub fn name(self) -> &'static str {
+    pub fn name(&self) -> &str {
         match self {
             Self::World => executor_sim::program::WORLD,
             Self::Executor => executor_sim::program::EXECUTOR,
             Self::Child => child_agent::NAME,
             Self::Parent => parent_agent::NAME,
+            Self::Room => executor_sim::ROOM,
+            Self::Vehicle(name) => name.as_str(),
+        }
+    }
+
+    /// Whether it is reality, and has the clock: it begins first, and ends last.
+    pub fn is_reality(&self) -> bool {
+        matches!(self, Self::World | Self::Room)
+    }
+
+    /// What `intermezzo role` calls it.
+    fn word(&self) -> &str {
+        match self {
+            Self::Vehicle(_) => "vehicle",
+            role => role.name(),
         }
     }
 }
@@ -87,7 +102,7 @@ pub(super) struct RoleProcess {
 
 impl RoleProcess {
     pub(super) fn start(
-        kind: RoleKind,
+        kind: &RoleKind,
         setup: &Setup,
         state: &Path,
         endpoints: &[String],
@@ -96,8 +111,8 @@ impl RoleProcess {
         let failed = |error| Failure::failed(format_args!("cannot start the {kind}: {error}"));
         let mut command = Command::new(std::env::current_exe().map_err(failed)?);
         command
-            .args(["role", kind.name(), "--until-stdin-ends"])
-            .args(["--robot", &setup.robot, "--start", &setup.start]);
+            .args(["role", kind.word(), "--until-stdin-ends"])
+            .args(["--robot", &setup.robot]);
         command.arg("--state").arg(state);
         for endpoint in endpoints {
             command.args(["--connect", endpoint]);
@@ -108,9 +123,26 @@ impl RoleProcess {
         if let Some(file) = setup.zenoh_config_of(kind.name()) {
             command.arg("--zenoh-config").arg(file);
         }
+        if !matches!(kind, RoleKind::Room | RoleKind::Vehicle(_)) {
+            command.args(["--start", &setup.start]);
+        }
         match kind {
             RoleKind::World => {
                 command.args(["--speed", &setup.speed.to_string()]);
+            }
+            RoleKind::Room => {
+                command.args(["--speed", &setup.speed.to_string()]);
+                if let Some(seed) = setup.faults {
+                    command.args(["--faults", &seed.to_string()]);
+                }
+            }
+            RoleKind::Vehicle(name) => {
+                command.args(["--name", name.as_str()]);
+                command.args(setup.planner.to_args());
+                command.args(setup.limits.to_args());
+                if let Some(together) = setup.together {
+                    command.args(["--together", &together.to_string()]);
+                }
             }
             RoleKind::Executor => {
                 if let Some(seed) = setup.faults {
@@ -141,7 +173,7 @@ impl RoleProcess {
             pid: child.id().unwrap_or_default(),
             stdin: child.stdin.take(),
             orders,
-            watching: tokio::spawn(watch(kind, child, news.clone(), ordered)),
+            watching: tokio::spawn(watch(kind.clone(), child, news.clone(), ordered)),
         })
     }
 
@@ -176,7 +208,7 @@ async fn watch(
         let Some(stderr) = stderr else { return };
         let mut lines = BufReader::new(stderr).lines();
         while let Ok(Some(line)) = lines.next_line().await {
-            let _ = news.send(ProcessNews::Said(kind, line));
+            let _ = news.send(ProcessNews::Said(kind.clone(), line));
         }
     };
     let ended = async {

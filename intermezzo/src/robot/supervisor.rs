@@ -53,8 +53,7 @@ impl Supervisor {
             .await
             .map_err(network)?;
         let (tell, process_news) = mpsc::unbounded_channel();
-        let kinds = RoleKind::ALL.into_iter();
-        let kinds = kinds.filter(|kind| *kind != RoleKind::World || !setup.world_elsewhere);
+        let kinds = setup.roles().into_iter();
         let mut work = Work {
             roles: kinds.map(|kind| (kind, Watched::new())).collect(),
             setup: setup.clone(),
@@ -67,9 +66,9 @@ impl Supervisor {
             questions,
             news,
         };
-        let kinds: Vec<RoleKind> = work.roles.keys().copied().collect();
+        let kinds: Vec<RoleKind> = work.roles.keys().cloned().collect();
         for kind in kinds {
-            if let Err(failure) = work.spawn(kind) {
+            if let Err(failure) = work.spawn(&kind) {
                 work.end_all().await;
                 return Err(failure);
             }
@@ -109,9 +108,9 @@ impl Work {
         loop {
             let next = self.roles.iter().filter_map(|(kind, role)| {
                 let (at, due) = role.due(self.setup.hang_limit)?;
-                Some((at, *kind, due))
+                Some((at, kind.clone(), due))
             });
-            let next = next.min_by_key(|(at, ..)| *at);
+            let next = next.min_by(|(one, ..), (other, ..)| one.cmp(other));
             tokio::select! {
                 biased;
                 // A sender that is dropped wants the end just as well.
@@ -120,7 +119,7 @@ impl Work {
                 Some(news) = self.process_news.recv() => self.process(news),
                 Ok(token) = self.tokens.recv_async() => self.token(&token),
                 Ok(question) = self.questions.recv_async() => self.answer(question).await,
-                (kind, due) = until(next) => self.do_due(kind, due).await,
+                (kind, due) = until(next) => self.do_due(&kind, due).await,
             }
         }
         self.end_all().await;
@@ -131,8 +130,8 @@ impl Work {
         let _ = self.news.send(news);
     }
 
-    fn spawn(&mut self, kind: RoleKind) -> Result<(), Failure> {
-        let Some(role) = self.roles.get_mut(&kind) else {
+    fn spawn(&mut self, kind: &RoleKind) -> Result<(), Failure> {
+        let Some(role) = self.roles.get_mut(kind) else {
             return Ok(());
         };
         // Before the process is there, so that whatever it says is later.
@@ -162,24 +161,24 @@ impl Work {
                 }
                 self.tell(RoleNews::Said(kind, line));
             }
-            ProcessNews::Ended(kind, end, how) => self.ended(kind, end, how),
+            ProcessNews::Ended(kind, end, how) => self.ended(&kind, end, how),
         }
     }
 
-    fn ended(&mut self, kind: RoleKind, end: End, how: String) {
-        let Some(role) = self.roles.get_mut(&kind) else {
+    fn ended(&mut self, kind: &RoleKind, end: End, how: String) {
+        let Some(role) = self.roles.get_mut(kind) else {
             return;
         };
         let pid = role.pid();
         let told = match role.ended(end, &how) {
             Verdict::Again(next_in) => RoleNews::Ended {
-                role: kind,
+                role: kind.clone(),
                 pid,
                 how,
                 next_in,
             },
             Verdict::GiveUp => RoleNews::GivenUp {
-                role: kind,
+                role: kind.clone(),
                 how: role.last_words(&how),
             },
         };
@@ -189,12 +188,11 @@ impl Work {
     fn token(&mut self, token: &Sample) {
         let read = Keys::read_alive(token.key_expr().as_str());
         let Some((name, epoch)) = read else { return };
-        let Some(kind) = RoleKind::named(name) else {
+        let mut roles = self.roles.iter_mut();
+        let Some((kind, role)) = roles.find(|(kind, _)| kind.name() == name) else {
             return;
         };
-        let Some(role) = self.roles.get_mut(&kind) else {
-            return;
-        };
+        let kind = kind.clone();
         role.token(epoch, token.kind() == SampleKind::Put);
         let pid = role.pid();
         match role.phase {
@@ -224,7 +222,7 @@ impl Work {
         }
     }
 
-    async fn do_due(&mut self, kind: RoleKind, due: Due) {
+    async fn do_due(&mut self, kind: &RoleKind, due: Due) {
         match due {
             Due::Start => {
                 if let Err(failure) = self.spawn(kind) {
@@ -233,7 +231,7 @@ impl Work {
             }
             Due::TellSilence => {
                 let cut_off = self.cut_off().await;
-                let Some(role) = self.roles.get_mut(&kind) else {
+                let Some(role) = self.roles.get_mut(kind) else {
                     return;
                 };
                 let since = Instant::now();
@@ -241,12 +239,15 @@ impl Work {
                 role.phase = Phase::Silent { since, told };
                 let pid = role.pid();
                 if told {
-                    self.tell(RoleNews::Silent { role: kind, pid });
+                    self.tell(RoleNews::Silent {
+                        role: kind.clone(),
+                        pid,
+                    });
                 }
             }
             Due::Kill => {
                 let cut_off = self.cut_off().await;
-                let Some(role) = self.roles.get_mut(&kind) else {
+                let Some(role) = self.roles.get_mut(kind) else {
                     return;
                 };
                 if cut_off {
@@ -256,7 +257,7 @@ impl Work {
                 let pid = role.pid();
                 let after = role.kill();
                 self.tell(RoleNews::Killed {
-                    role: kind,
+                    role: kind.clone(),
                     pid,
                     after,
                 });
@@ -289,9 +290,11 @@ impl Work {
 
     /// Ends all of them, and returns when they have ended.
     async fn end_all(mut self) {
-        let world = self.roles.remove(&RoleKind::World);
-        end(self.roles.into_values()).await;
-        end(world.into_iter()).await;
+        let roles = std::mem::take(&mut self.roles).into_iter();
+        let (reality, others): (Vec<_>, Vec<_>) = roles.partition(|(kind, _)| kind.is_reality());
+        for roles in [others, reality] {
+            end(roles.into_iter().map(|(_, role)| role)).await;
+        }
     }
 }
 

@@ -88,7 +88,7 @@ impl Screen for JsonLines {
             } => {
                 let missing_s = after.map(|after| after.as_secs_f64());
                 let body = json!({ "process": pid, "restarts": restarts, "missing_s": missing_s });
-                ("role_ready", of_role(*role, body))
+                ("role_ready", of_role(role, body))
             }
             RoleNews::Ended {
                 role,
@@ -98,27 +98,27 @@ impl Screen for JsonLines {
             } => {
                 let next_s = next_in.as_secs_f64();
                 let body = json!({ "process": pid, "how": how, "next_start_s": next_s });
-                ("role_ended", of_role(*role, body))
+                ("role_ended", of_role(role, body))
             }
             RoleNews::Silent { role, pid } => {
-                ("role_silent", of_role(*role, json!({ "process": pid })))
+                ("role_silent", of_role(role, json!({ "process": pid })))
             }
             RoleNews::Answers { role, pid } => {
-                ("role_answers", of_role(*role, json!({ "process": pid })))
+                ("role_answers", of_role(role, json!({ "process": pid })))
             }
             RoleNews::Killed { role, pid, after } => {
                 let body = json!({ "process": pid, "silent_s": after.as_secs_f64() });
-                ("role_killed", of_role(*role, body))
+                ("role_killed", of_role(role, body))
             }
             RoleNews::GivenUp { role, how } => {
-                ("role_given_up", of_role(*role, json!({ "how": how })))
+                ("role_given_up", of_role(role, json!({ "how": how })))
             }
         };
         line(at, name, body);
     }
 }
 
-fn of_role(role: RoleKind, mut body: Value) -> Value {
+fn of_role(role: &RoleKind, mut body: Value) -> Value {
     body["role"] = json!(role.name());
     body
 }

@@ -5,6 +5,7 @@ mod json;
 mod people;
 mod progress;
 mod summary;
+mod team;
 mod words;
 
 use std::pin::Pin;
@@ -22,6 +23,7 @@ use crate::snapshot::Snapshot;
 pub(crate) use alternatives::alternatives;
 pub(crate) use json::JsonLines;
 pub(crate) use people::ForPeople;
+pub(crate) use team::ForTeam;
 pub(crate) use words::resumption;
 
 /// Where it is shown.

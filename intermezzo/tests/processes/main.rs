@@ -12,5 +12,6 @@ mod refusals;
 mod restart;
 mod side_by_side;
 mod supervision;
+mod team;
 mod typing;
 mod zenoh_command;

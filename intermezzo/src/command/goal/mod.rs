@@ -17,7 +17,12 @@ pub(crate) async fn run(args: GoalArgs) -> Result<Exit, Failure> {
     let goal = read(&args)?;
     let connection = Connection::open(&args.target).await?;
     if !args.wait {
-        let verdict = connection.client.goal(goal).await.map_err(unanswered);
+        let client = &connection.client;
+        let verdict = match &args.vehicle {
+            None => client.goal(goal).await,
+            Some(vehicle) => client.goal_to(vehicle, goal).await,
+        };
+        let verdict = verdict.map_err(unanswered);
         let verdict = connection.close(verdict).await?;
         return Ok(tell(&verdict, &args));
     }

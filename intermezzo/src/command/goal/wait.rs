@@ -6,7 +6,7 @@ use std::time::Duration;
 use agent_core::model::Time;
 use agent_core::protocol::{Event, GoalRequest, Happening};
 use agent_link::registry::Registry;
-use agent_link::{ClientError, Events, Keys, wire};
+use agent_link::{Client, ClientError, Events, Keys, wire};
 use tokio::time::Instant;
 use zenoh::handlers::FifoChannelHandler;
 use zenoh::pubsub::Subscriber;
@@ -32,15 +32,38 @@ pub(super) async fn run(
         Ok(listening) => listening,
         Err((connection, failure)) => return connection.close(Err(failure)).await,
     };
-    let asked = listening.connection.client.goal(goal).await;
+    let client = &listening.connection.client;
+    let taker = match &args.vehicle {
+        Some(vehicle) => vehicle.clone(),
+        None => who_takes_goals(client).await,
+    };
+    let asked = match &args.vehicle {
+        Some(vehicle) => client.goal_to(vehicle, goal).await,
+        None => client.goal(goal).await,
+    };
     let ended = match asked.map_err(unanswered) {
         Err(failure) => Err(failure),
         Ok(verdict) => match (tell(&verdict, args), &verdict.id) {
-            (Exit::Done, Some(id)) => Waiting::new(id, args).until_it_ends(&mut listening).await,
+            (Exit::Done, Some(id)) => {
+                let mut waiting = Waiting::new(id, &taker, args);
+                waiting.until_it_ends(&mut listening).await
+            }
             (exit, _) => Ok(exit),
         },
     };
     listening.connection.close(ended).await
+}
+
+/// The agent that is told of goals for the robot: its parent agent, or the first of a restaurant's
+/// vehicles.
+async fn who_takes_goals(client: &Client) -> String {
+    let alive = client.alive().await.unwrap_or_default();
+    let mut names = alive.into_iter().map(|(name, _)| name);
+    let vehicle = match names.clone().any(|name| name == parent_agent::NAME) {
+        true => None,
+        false => names.find(|name| name != executor_sim::ROOM),
+    };
+    vehicle.unwrap_or_else(|| parent_agent::NAME.to_owned())
 }
 
 /// A connection, and what it tells.
@@ -79,6 +102,8 @@ impl Listening {
 /// A goal that was accepted.
 struct Waiting<'a> {
     id: &'a str,
+    /// The agent that has the goal.
+    taker: &'a str,
     args: &'a GoalArgs,
     /// The starts of the agent that has the goal which are there.
     there: BTreeSet<u64>,
@@ -89,9 +114,10 @@ struct Waiting<'a> {
 }
 
 impl<'a> Waiting<'a> {
-    fn new(id: &'a str, args: &'a GoalArgs) -> Self {
+    fn new(id: &'a str, taker: &'a str, args: &'a GoalArgs) -> Self {
         Self {
             id,
+            taker,
             args,
             there: BTreeSet::new(),
             // Who is there is told at once.
@@ -109,7 +135,7 @@ impl<'a> Waiting<'a> {
                 biased;
                 Some(event) = listening.events.next() => {
                     if let Ok((agent, event)) = event
-                        && agent == parent_agent::NAME
+                        && agent == self.taker
                         && event.goal.as_ref().is_some_and(|goal| *goal == self.id)
                         && let Some(exit) = self.heard(&event)
                     {
@@ -129,7 +155,7 @@ impl<'a> Waiting<'a> {
     /// The exit status, if that was the end.
     fn heard(&self, event: &Event) -> Option<Exit> {
         if self.args.json {
-            if let Ok(line) = wire::event_to_line(parent_agent::NAME, event) {
+            if let Ok(line) = wire::event_to_line(self.taker, event) {
                 anstream::println!("{line}");
             }
         } else if let Some(words) = words(event) {
@@ -144,9 +170,12 @@ impl<'a> Waiting<'a> {
 
     /// Follows whether the agent that has the goal is there.
     fn token(&mut self, token: &Sample) {
-        let Some((parent_agent::NAME, epoch)) = Keys::read_alive(token.key_expr().as_str()) else {
+        let Some((name, epoch)) = Keys::read_alive(token.key_expr().as_str()) else {
             return;
         };
+        if name != self.taker {
+            return;
+        }
         if token.kind() == SampleKind::Put {
             self.there.insert(epoch);
             if self.gone.take().is_some() {
@@ -203,7 +232,7 @@ impl<'a> Waiting<'a> {
     /// Asks the agent that has the goal how it stands.
     async fn ask(&mut self, listening: &Listening) -> Result<Option<Exit>, Failure> {
         let client = &listening.connection.client;
-        let goal = match client.goal_state(parent_agent::NAME, self.id).await {
+        let goal = match client.goal_state(self.taker, self.id).await {
             Ok(Some(goal)) => goal,
             Ok(None) => {
                 return Err(Failure::nobody_there(format_args!(

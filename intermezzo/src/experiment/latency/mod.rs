@@ -205,6 +205,8 @@ impl Latency {
                 emergencies_in_total: unlimited,
                 ..LimitOptions::default()
             },
+            vehicles: Vec::new(),
+            together: None,
         })
     }
 

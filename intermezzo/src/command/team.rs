@@ -1,0 +1,126 @@
+//! `intermezzo up` for a restaurant: a room and its vehicles until Ctrl-C.
+
+use std::path::PathBuf;
+
+use agent_core::model::{Symbol, Time};
+use maps::Restaurant;
+
+use crate::cli::UpArgs;
+use crate::exit::{Exit, Failure};
+use crate::robot::{Robot, Setup};
+use crate::show::{Ending, ForTeam, JsonLines, Programme, show};
+use crate::style::{BAD, BOLD, DIM};
+
+pub(super) async fn run(
+    args: UpArgs,
+    folder: Option<PathBuf>,
+    restaurant: &Restaurant,
+) -> Result<Exit, Failure> {
+    if args.scenario.is_some() {
+        let what = "--scenario: stories are for the robot of a museum";
+        return Err(Failure::bad_input(what).advice("intermezzo demo restaurant"));
+    }
+    if args.no_world {
+        let what = "--no-world: the room of a restaurant cannot be elsewhere";
+        return Err(Failure::bad_input(what));
+    }
+    let setup = Setup {
+        robot: args.robot,
+        place: folder,
+        start: args.start,
+        speed: args.speed,
+        planner: args.planner,
+        faults: args.faults,
+        listen: args.listen,
+        connect: args.connect,
+        zenoh_config: args.zenoh_config,
+        state: args.state,
+        world_elsewhere: false,
+        hang_limit: args.hang_limit,
+        security: args.security,
+        limits: args.limits,
+        vehicles: restaurant.room().vehicles.keys().cloned().collect(),
+        together: args.together,
+    };
+    let mut interrupted = std::pin::pin!(agent_link::interrupted());
+    let Some(mut robot) = Robot::start(&setup, &mut interrupted).await? else {
+        return Ok(Exit::Done);
+    };
+    let programme = Programme {
+        site: restaurant.site(),
+        player: None,
+        until_done: false,
+    };
+    let ending = if args.json {
+        JsonLines.ready(&robot);
+        show(&mut robot, programme, &mut interrupted, &mut JsonLines).await
+    } else {
+        introduce(&setup, restaurant, &robot);
+        let mut screen = ForTeam::new(Time::ZERO);
+        show(&mut robot, programme, &mut interrupted, &mut screen).await
+    };
+    let now = robot.clock.now();
+    robot.end().await;
+    let (exit, failed) = match ending? {
+        Ending::Interrupted => (Exit::Done, Vec::new()),
+        Ending::Over(failed) => (Exit::Done, failed),
+        Ending::GivenUp(role, how) => {
+            let what = format!("the {role} ends whenever it is started: {how}");
+            (Exit::Failed, vec![what])
+        }
+    };
+    if args.json {
+        JsonLines.end(now, exit == Exit::Done, &failed);
+    } else {
+        for reason in failed {
+            anstream::println!("{BAD}✗{BAD:#} {reason}");
+        }
+    }
+    Ok(exit)
+}
+
+/// How to talk to them, to be copied.
+fn introduce(setup: &Setup, restaurant: &Restaurant, robot: &Robot) {
+    let name = robot.keys.robot();
+    let mut option = match name {
+        agent_link::options::DEFAULT_ROBOT => String::new(),
+        name => format!(" --robot {name}"),
+    };
+    if let Some(folder) = &setup.security {
+        option.push_str(&format!(" --security {}", folder.display()));
+    }
+    let vehicles: Vec<&str> = setup.vehicles.iter().map(Symbol::as_str).collect();
+    anstream::println!(
+        "{BOLD}{name}{BOLD:#}: {} in {}. It is reached at {} and ends on Ctrl-C.",
+        vehicles.join(", "),
+        restaurant.name(),
+        robot.endpoint,
+    );
+    anstream::println!("{DIM}In another terminal:{DIM:#}");
+    let mut commands = Vec::new();
+    if let Some((guest, plan)) = restaurant.room().guests.iter().next() {
+        let (table, kind) = (&plan.table, &plan.wants);
+        commands.push((
+            format!("fact '(arrived {guest})'"),
+            "a guest comes".to_owned(),
+        ));
+        commands.push((
+            format!("fact '(seated {guest} {table})'"),
+            "and sits down".to_owned(),
+        ));
+        commands.push((
+            format!("goal '(serve {kind} {guest})'"),
+            "something to do, for whoever can do it".to_owned(),
+        ));
+    }
+    commands.push(("status".to_owned(), "what each of them does".to_owned()));
+    commands.push((
+        "watch --json".to_owned(),
+        "all events, for programs".to_owned(),
+    ));
+    for (command, what) in commands {
+        let command = format!("intermezzo {command}{option}");
+        anstream::println!("  {command:<52} {DIM}{what}{DIM:#}");
+    }
+    anstream::println!();
+}
