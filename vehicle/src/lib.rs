@@ -9,7 +9,7 @@ pub mod program;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-use agent_core::agent::{Configuration, Executors, Policy};
+use agent_core::agent::{Configuration, Executors, Policy, Repair};
 use agent_core::model::{FactChange, Symbol};
 use agent_core::parallel::ParallelAgent;
 use agent_core::planner::Planner;
@@ -66,7 +66,10 @@ pub fn configuration(
         maps_below: Arc::new(()),
         facts: start.facts.into_iter().map(FactChange::Add).collect(),
         executors: Executors::one(ROOM),
-        policy: Policy::default(),
+        policy: Policy {
+            repair: Repair::Nearest,
+            ..Policy::default()
+        },
     })
 }
 
