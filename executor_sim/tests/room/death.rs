@@ -92,6 +92,9 @@ fn a_vehicle_without_memory_is_told_the_whole_truth_about_its_body() {
                 "(holding water1)",
                 "(loaded water2 slot3)",
                 "(with water2 k3)",
+                "(edge water1 kitchen)",
+                "(edge water1 table1)",
+                "(edge water1 table2)",
             ] {
                 belief.apply(&agent_core::model::FactChange::Add(crate::rig::parse_fact(
                     fact,
@@ -145,10 +148,15 @@ pub fn assert_true(rig: &Rig, vehicle: &str) {
             let fact = format!("(loaded {bottle} {slot})");
             assert_eq!(rig.believes(vehicle, &fact), there, "{fact}");
         }
-        if let (Some(at), Spot::Proper { node }) = (&at, &known.spot) {
-            let fact = format!("(stands {bottle} {at})");
-            assert_eq!(rig.believes(vehicle, &fact), node == at, "{fact}");
-        }
+        let Some(at) = &at else { continue };
+        let node = at.clone();
+        let proper = known.spot == Spot::Proper { node };
+        let fact = format!("(stands {bottle} {at})");
+        assert_eq!(rig.believes(vehicle, &fact), proper, "{fact}");
+        let node = at.clone();
+        let edge = known.spot == Spot::Edge { node };
+        let fact = format!("(edge {bottle} {at})");
+        assert_eq!(rig.believes(vehicle, &fact), edge, "{fact}");
     }
 }
 
@@ -205,4 +213,48 @@ fn rows_of_another_restaurant_are_refused() {
         refused
             .is_err_and(|why| why.key.contains("cola1") && why.reason.contains("no such bottle"))
     );
+}
+
+#[test]
+fn what_was_suspended_or_over_before_a_room_started_again_is_so_after() {
+    let mut rig = Rig::new();
+    rig.change("(seated ann table1)");
+    let over = rig.start("k3", "(grasp cola1 ann kitchen)");
+    rig.run_until_end(&over);
+    let kept = [
+        ("k3", rig.start("k3", "(put-on-tray cola1 slot1 kitchen)")),
+        ("k2", rig.start("k2", "(detect ann table2)")),
+        ("k2", rig.start("k2", "(welcome ann table2)")),
+        ("k2", rig.start("k2", "(move table2 table1 table1-table2)")),
+    ];
+    rig.run_s(3.0);
+    for (vehicle, id) in &kept {
+        // Speaking to a guest cannot be suspended in this domain.
+        let answer = rig.suspend(vehicle, id);
+        assert!(!matches!(answer, Answer::Rejected { .. }), "{answer:?}");
+    }
+    rig.run_to_rest();
+    rig.restart_room(Room::new(&paper()).expect("a room"));
+    assert!(matches!(rig.resume("k3", &over), Answer::Finished { .. }));
+    for (vehicle, id) in &kept {
+        let answer = rig.resume(vehicle, id);
+        match rig.suspensions_of(id) {
+            0 => assert!(matches!(answer, Answer::Finished { .. }), "{answer:?}"),
+            _ => assert_eq!(answer, Answer::Accepted),
+        }
+        let end = rig.run_until_end(id);
+        assert!(matches!(end, Some(Report::Success { .. })), "{end:?}");
+    }
+    assert!(rig.believes("k3", "(loaded cola1 slot1)") && rig.believes("k2", "(at table1)"));
+}
+
+#[test]
+fn a_vehicle_that_has_lost_its_memory_and_was_not_missed_is_told_too() {
+    let mut rig = before(4);
+    let name = Symbol::from("k3");
+    rig.beliefs
+        .insert(name.clone(), agent_core::model::Belief::default());
+    rig.tell(Input::Reborn { name });
+    assert_true(&rig, "k3");
+    assert!(rig.believes("k3", "(holding cola1)"));
 }

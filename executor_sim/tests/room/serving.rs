@@ -200,6 +200,11 @@ fn guests_come_sit_and_go_by_plan() {
     assert!(rig.believes("k1", "(arrived ann)"));
     rig.run_until(Time::from_secs(20.0));
     assert!(!rig.believes("k1", "(arrived ann)"));
+    let mut sent_away = rig.clone();
     rig.run_until(Time::from_secs(301.0));
     assert!(rig.believes("k1", "(gone ann)"));
+    // Whoever says otherwise decides from then on.
+    sent_away.change("(arrived ann)");
+    sent_away.run_until(Time::from_secs(301.0));
+    assert!(sent_away.believes("k1", "(arrived ann)"));
 }

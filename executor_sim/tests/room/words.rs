@@ -1,6 +1,6 @@
 //! Execution models and instructions that make no sense.
 
-use agent_core::model::{Belief, ExecutionModel, Pattern, Symbol, Term};
+use agent_core::model::{Belief, ExecutionModel, Pattern, Symbol, Term, Time};
 use agent_core::protocol::{Answer, Input, Instruction, Reply};
 use executor_sim::PartsVocabulary;
 
@@ -134,6 +134,42 @@ fn what_nobody_knows_is_answered_as_the_table_says() {
         }
         assert_eq!(rig.clear(vehicle, &id), Answer::Accepted);
     }
+}
+
+#[test]
+fn what_was_cleared_is_not_begun_again() {
+    let mut rig = Rig::new();
+    let grasp = "(grasp cola1 ann kitchen)";
+    let id = rig.start("k3", grasp);
+    rig.run_s(5.0);
+    rig.suspend("k3", &id);
+    rig.run_to_rest();
+    assert_eq!(rig.clear("k3", &id), Answer::Accepted);
+    assert_eq!(
+        rig.clear("k3", &id),
+        Answer::Accepted,
+        "there is nothing to drop"
+    );
+    for answer in [
+        rig.execute("k3", &id, grasp),
+        rig.resume("k3", &id),
+        rig.suspend("k3", &id),
+    ] {
+        assert!(
+            matches!(&answer, Answer::Rejected { reason } if reason.contains("was cleared")),
+            "{answer:?}"
+        );
+    }
+}
+
+#[test]
+fn an_instruction_that_comes_at_the_end_finds_it_done() {
+    let mut rig = Rig::new();
+    let id = rig.start("k3", "(grasp cola1 ann kitchen)");
+    // Nobody has woken the room since.
+    rig.now = Time::from_secs(31.0);
+    let answer = rig.suspend("k3", &id);
+    assert!(matches!(answer, Answer::Finished { .. }), "{answer:?}");
 }
 
 #[test]
