@@ -139,6 +139,13 @@ fn a_restart_at_any_moment_changes_nothing() {
         room.play(3000.0);
         assert_eq!(room.log, undisturbed.log, "at {moment}");
         assert_eq!(room.succeeded(), undisturbed.succeeded(), "at {moment}");
+        let stops = |it: &Happening| {
+            matches!(
+                it,
+                Happening::GoalSuspended { .. } | Happening::GoalResumed { .. }
+            )
+        };
+        assert_eq!(room.count(stops), undisturbed.count(stops), "at {moment}");
     }
 }
 
