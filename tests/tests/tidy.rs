@@ -85,7 +85,7 @@ fn the_core_reads_no_clock_and_starts_no_thread() {
 
 #[test]
 fn the_three_roles_never_name_each_other() {
-    let roles = ["parent_agent", "child_agent", "executor_sim"];
+    let roles = ["parent_agent", "child_agent", "executor_sim", "vehicle"];
     for role in roles {
         let known = cargo_tree(role);
         for other in roles.iter().filter(|other| **other != role) {
@@ -128,6 +128,7 @@ fn no_source_file_is_longer_than_it_should_be() {
         "parent_agent/src",
         "tests/plan_checker/src",
         "tests/src",
+        "vehicle/src",
     ];
     for folder in folders {
         for (file, text) in sources(folder) {

@@ -20,7 +20,10 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
         }
         let new: Vec<Arisen> = self.arisen.difference(&before).cloned().collect();
         for arisen in new {
-            if !self.is_published_by_another(&arisen.task) {
+            let own = self.tasks.published().values();
+            let mut own = own.map(|published| &published.new.what);
+            if !own.any(|what| *what == arisen.task) && !self.is_published_by_another(&arisen.task)
+            {
                 self.publish_normal(&arisen.task);
             }
         }

@@ -125,6 +125,7 @@ async fn a_goal_can_be_for_one_vehicle_and_status_tells_of_all() {
     // What nobody can do waits until somebody can.
     let said = user.ok(&["goal", "(greet ann)", "--id", "hello"]).await;
     assert!(said.out.contains("accepted"), "{}", said.out);
+    user.ok(&["fact", "(arrived ann)"]).await;
     let done = user
         .ok(&["goal", "(greet ann)", "--id", "hello", "--wait"])
         .await;
