@@ -320,7 +320,11 @@ impl Link {
                 acknowledge(question, &answer);
             }
             (ReplyTo::User(goal, question), Response::Goal(result)) => {
-                self.tell_user(&Verdict::on(&goal, &result), question);
+                let mut verdict = Verdict::on(&goal, &result);
+                if self.wiring.in_team {
+                    verdict = verdict.said_by(&self.wiring.name);
+                }
+                self.tell_user(&verdict, question);
             }
             (ReplyTo::User(goal, question), _) => {
                 self.tell_user(&Verdict::refused(&goal, FAULT.to_owned()), question);

@@ -124,6 +124,10 @@ pub struct Verdict {
     /// What was asked, as far as it was understood.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub task: Option<String>,
+    /// Who says so, if it is one of a team: whoever wants to know how the goal goes on listens to that
+    /// one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by: Option<String>,
 }
 
 impl Verdict {
@@ -139,6 +143,7 @@ impl Verdict {
             accepted: result.is_ok(),
             reason,
             task: Some(tasks_as_text(&goal.tasks)),
+            by: None,
         }
     }
 
@@ -150,7 +155,14 @@ impl Verdict {
             accepted: false,
             reason: Some(reason),
             task: Some(tasks_as_text(&goal.tasks)),
+            by: None,
         }
+    }
+
+    /// The same, said by one of a team.
+    pub fn said_by(self, name: &str) -> Self {
+        let by = Some(name.to_owned());
+        Self { by, ..self }
     }
 
     /// It could not be read.
@@ -161,6 +173,7 @@ impl Verdict {
             accepted: false,
             reason: Some(error.to_string()),
             task: None,
+            by: None,
         }
     }
 }

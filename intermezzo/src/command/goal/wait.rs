@@ -6,7 +6,7 @@ use std::time::Duration;
 use agent_core::model::Time;
 use agent_core::protocol::{Event, GoalRequest, Happening};
 use agent_link::registry::Registry;
-use agent_link::{Client, ClientError, Events, Keys, wire};
+use agent_link::{ClientError, Events, Keys, wire};
 use tokio::time::Instant;
 use zenoh::handlers::FifoChannelHandler;
 use zenoh::pubsub::Subscriber;
@@ -33,10 +33,6 @@ pub(super) async fn run(
         Err((connection, failure)) => return connection.close(Err(failure)).await,
     };
     let client = &listening.connection.client;
-    let taker = match &args.vehicle {
-        Some(vehicle) => vehicle.clone(),
-        None => who_takes_goals(client).await,
-    };
     let asked = match &args.vehicle {
         Some(vehicle) => client.goal_to(vehicle, goal).await,
         None => client.goal(goal).await,
@@ -45,25 +41,14 @@ pub(super) async fn run(
         Err(failure) => Err(failure),
         Ok(verdict) => match (tell(&verdict, args), &verdict.id) {
             (Exit::Done, Some(id)) => {
-                let mut waiting = Waiting::new(id, &taker, args);
+                let taker = verdict.by.as_deref().unwrap_or(parent_agent::NAME);
+                let mut waiting = Waiting::new(id, taker, args);
                 waiting.until_it_ends(&mut listening).await
             }
             (exit, _) => Ok(exit),
         },
     };
     listening.connection.close(ended).await
-}
-
-/// The agent that is told of goals for the robot: its parent agent, or the first of a restaurant's
-/// vehicles.
-async fn who_takes_goals(client: &Client) -> String {
-    let alive = client.alive().await.unwrap_or_default();
-    let mut names = alive.into_iter().map(|(name, _)| name);
-    let vehicle = match names.clone().any(|name| name == parent_agent::NAME) {
-        true => None,
-        false => names.find(|name| name != executor_sim::ROOM),
-    };
-    vehicle.unwrap_or_else(|| parent_agent::NAME.to_owned())
 }
 
 /// A connection, and what it tells.
