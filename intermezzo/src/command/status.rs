@@ -207,7 +207,7 @@ fn agent(text: &mut String, name: &str, views: &Value, with_plans: bool) {
     for other in list(&status["branches"]).iter().skip(1) {
         let goal = goal_words(&other["running"]).unwrap_or_default();
         let action = other["action"]["action"].as_str();
-        let doing = action.map_or_else(|| other["phase"].as_str().unwrap_or_default(), |it| it);
+        let doing = action.or(other["phase"].as_str()).unwrap_or_default();
         let _ = writeln!(text, "         {GOOD}▶{GOOD:#} {goal}: {doing}");
     }
     if with_plans {

@@ -378,7 +378,11 @@ impl World {
         vehicle.sees.clear();
         let work = std::mem::take(&mut vehicle.work);
         for work in work.into_values() {
-            let until = self.now + self.chance.within(0.0, rest);
+            let until = match work.since {
+                Some(_) => self.now + self.chance.within(0.0, rest),
+                // It stood still already, or was about to.
+                None => work.busy_until,
+            };
             self.vehicles[who].resting.insert(work.task, until);
         }
         self.look_again(who, 0.01, 0.05);
