@@ -21,6 +21,11 @@ impl ExperimentError {
         Self::Setup(why.to_string())
     }
 
+    pub(crate) fn findings(findings: Vec<maps::Finding>) -> Self {
+        let findings: Vec<String> = findings.iter().map(ToString::to_string).collect();
+        Self::Setup(findings.join("\n"))
+    }
+
     pub(crate) fn course(situation: impl ToString, why: impl ToString) -> Self {
         Self::Course {
             situation: situation.to_string(),

@@ -22,7 +22,10 @@ pub use machine::machine;
 pub use onlooker::Onlooker;
 pub use replanning::{PAPER_MACHINE, PAPER_ROWS, PaperRow, replanning};
 pub use report::{Report, WriteError};
-pub use restaurant::{ROOM, Team};
+pub use restaurant::{
+    CHANCE, Case, Course, Deed, PAPER_WAITS_S, RATIO_BAND, ROOM, Restaurants, Team, both_cases,
+    restaurant,
+};
 pub use scaling::{MeasureMemory, SIZES, Scaling, memory_after_an_interruption, scaling};
 pub use summary::Summary;
 pub use table::{Cell, Table};
