@@ -5,7 +5,7 @@ mod map;
 mod secure;
 
 pub(crate) use experiment::{
-    ExperimentCommand, FleetArgs, LatencyArgs, ReportOptions, ScalingArgs,
+    ExperimentCommand, FleetArgs, LatencyArgs, ReportOptions, RestaurantArgs, ScalingArgs,
 };
 pub(crate) use map::{AreasBy, FromRmfArgs, MapCommand, ScaleArgs, SvgArgs};
 pub(crate) use secure::{CertsArgs, PasswordsArgs};
@@ -117,6 +117,14 @@ pub(crate) struct Target {
     pub(crate) user: Option<String>,
 }
 
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum DemoOf {
+    /// Four processes: world, controller, child and parent.
+    Museum,
+    /// Four processes: the room, a watcher, a waiter and a carrier.
+    Restaurant,
+}
+
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "\
 The story: a robot guides a visitor from the entrance (n1) to the main hall (n40). In the middle of
@@ -129,6 +137,9 @@ Examples:
   intermezzo demo --speed 5     slower, to watch the robot stop and turn
   intermezzo demo --json        one event a line, for programs")]
 pub(crate) struct DemoArgs {
+    /// A guided tour with two emergencies, or two guests in a restaurant with three vehicles and a spill.
+    #[arg(value_enum, value_name = "WHAT", default_value_t = DemoOf::Museum)]
+    pub(crate) what: DemoOf,
     /// How many seconds of the world pass in one.
     #[arg(long, value_name = "X", default_value_t = 8.0, value_parser = speed)]
     pub(crate) speed: f64,
@@ -154,9 +165,10 @@ A role that dies or hangs is started again; `intermezzo status` shows it.
 A scenario is TOML, one event after the other:
   [[event]]
   at_s = 2.0                  # seconds after the robot is ready, or
-  while_on = \"arc5\"           # when the robot is well on that arc; or at once
+  while_on = \"arc5\"           # when the robot is well on that arc; or at once, or, of a team,
+                              # while_doing = \"k3 grasp\" or once = \"(served ann cola)\"
   say = \"Somebody is in need.\"
-  emergency = \"(go n28)\"      # or goal = …; with id, priority, deadline_s
+  emergency = \"(go n28)\"      # or goal = …; with id, priority, deadline_s, and to = \"k3\"
                               # or door = \"door4_6\" and state = \"closed\"
                               # or fact = \"(not (open door4_6))\"
                               # or suspend, resume, cancel = \"tour\"

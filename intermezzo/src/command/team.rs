@@ -1,25 +1,29 @@
 //! `intermezzo up` for a restaurant: a room and its vehicles until Ctrl-C.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use agent_core::model::{Symbol, Time};
+use agent_link::Client;
 use maps::Restaurant;
 
+use super::up::{Performance, conclude, judge, read_scenario};
 use crate::cli::UpArgs;
 use crate::exit::{Exit, Failure};
 use crate::robot::{Robot, Setup};
-use crate::show::{Ending, ForTeam, JsonLines, Programme, show};
-use crate::style::{BAD, BOLD, DIM};
+use crate::scenario::Player;
+use crate::show::{ForTeam, JsonLines, Programme, show};
+use crate::style::{BOLD, DIM};
 
 pub(super) async fn run(
     args: UpArgs,
     folder: Option<PathBuf>,
     restaurant: &Restaurant,
 ) -> Result<Exit, Failure> {
-    if args.scenario.is_some() {
-        let what = "--scenario: stories are for the robot of a museum";
-        return Err(Failure::bad_input(what).advice("intermezzo demo restaurant"));
-    }
+    let scenario = match &args.scenario {
+        None => None,
+        Some(file) => Some(read_scenario(file, restaurant.site())?),
+    };
     if args.no_world {
         let what = "--no-world: the room of a restaurant cannot be elsewhere";
         return Err(Failure::bad_input(what));
@@ -42,39 +46,61 @@ pub(super) async fn run(
         vehicles: restaurant.room().vehicles.keys().cloned().collect(),
         together: args.together,
     };
+    let performance = Performance {
+        scenario,
+        until_done: args.until_done,
+        json: args.json,
+        from_the_start: false,
+    };
+    perform(&setup, restaurant, performance).await
+}
+
+/// Starts a room and its vehicles, shows what they do, and ends them.
+pub(super) async fn perform(
+    setup: &Setup,
+    restaurant: &Restaurant,
+    performance: Performance,
+) -> Result<Exit, Failure> {
     let mut interrupted = std::pin::pin!(agent_link::interrupted());
-    let Some(mut robot) = Robot::start(&setup, &mut interrupted).await? else {
+    let Some(mut robot) = Robot::start(setup, &mut interrupted).await? else {
         return Ok(Exit::Done);
     };
+    let client = Client::new(&robot.session, &robot.keys);
+    let ready = robot.clock.now();
+    let vehicles: BTreeSet<Symbol> = setup.vehicles.iter().cloned().collect();
+    let player = performance
+        .scenario
+        .map(|scenario| Player::new(scenario, client, ready, vehicles.clone()));
     let programme = Programme {
         site: restaurant.site(),
-        player: None,
-        until_done: false,
+        player,
+        until_done: performance.until_done,
     };
-    let ending = if args.json {
+    let ending = if performance.json {
         JsonLines.ready(&robot);
         show(&mut robot, programme, &mut interrupted, &mut JsonLines).await
     } else {
-        introduce(&setup, restaurant, &robot);
-        let mut screen = ForTeam::new(Time::ZERO);
-        show(&mut robot, programme, &mut interrupted, &mut screen).await
+        let zero = match performance.from_the_start {
+            true => ready,
+            false => {
+                introduce(setup, restaurant, &robot);
+                Time::ZERO
+            }
+        };
+        let mut screen = ForTeam::new(zero, vehicles);
+        let ending = show(&mut robot, programme, &mut interrupted, &mut screen).await;
+        for (vehicle, table) in screen.summaries() {
+            anstream::println!("\n{BOLD}{vehicle}{BOLD:#}\n{table}");
+        }
+        ending
     };
     let now = robot.clock.now();
     robot.end().await;
-    let (exit, failed) = match ending? {
-        Ending::Interrupted => (Exit::Done, Vec::new()),
-        Ending::Over(failed) => (Exit::Done, failed),
-        Ending::GivenUp(role, how) => {
-            let what = format!("the {role} ends whenever it is started: {how}");
-            (Exit::Failed, vec![what])
-        }
-    };
-    if args.json {
+    let (exit, failed) = judge(ending?);
+    if performance.json {
         JsonLines.end(now, exit == Exit::Done, &failed);
     } else {
-        for reason in failed {
-            anstream::println!("{BAD}✗{BAD:#} {reason}");
-        }
+        conclude(exit, performance.until_done, &failed);
     }
     Ok(exit)
 }

@@ -1,5 +1,6 @@
 //! `intermezzo up`: a robot until Ctrl-C.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use agent_core::model::Time;
@@ -79,7 +80,7 @@ pub(super) async fn perform(
     let ready = robot.clock.now();
     let player = performance
         .scenario
-        .map(|scenario| Player::new(scenario, client, ready));
+        .map(|scenario| Player::new(scenario, client, ready, BTreeSet::new()));
     let programme = Programme {
         site: place.site(),
         player,
@@ -109,19 +110,26 @@ pub(super) async fn perform(
     let (exit, failed) = judge(ending?);
     if performance.json {
         JsonLines.end(now, exit == Exit::Done, &failed);
-    } else if exit == Exit::Done {
-        if performance.until_done {
-            anstream::println!("{GOOD}Every goal was reached.{GOOD:#}");
-        }
     } else {
-        for reason in failed {
-            anstream::println!("{BAD}✗{BAD:#} {reason}");
-        }
+        conclude(exit, performance.until_done, &failed);
     }
     Ok(exit)
 }
 
-fn judge(ending: Ending) -> (Exit, Vec<String>) {
+/// The last words to people.
+pub(super) fn conclude(exit: Exit, until_done: bool, failed: &[String]) {
+    if exit == Exit::Done {
+        if until_done {
+            anstream::println!("{GOOD}Every goal was reached.{GOOD:#}");
+        }
+        return;
+    }
+    for reason in failed {
+        anstream::println!("{BAD}✗{BAD:#} {reason}");
+    }
+}
+
+pub(super) fn judge(ending: Ending) -> (Exit, Vec<String>) {
     match ending {
         Ending::Interrupted => (Exit::Done, Vec::new()),
         Ending::Over(failed) if failed.is_empty() => (Exit::Done, failed),
@@ -196,7 +204,7 @@ fn no_such_node(node: &str, site: &Site) -> Failure {
     }
 }
 
-fn read_scenario(file: &Path, site: &Site) -> Result<Scenario, Failure> {
+pub(super) fn read_scenario(file: &Path, site: &Site) -> Result<Scenario, Failure> {
     let text = std::fs::read_to_string(file).map_err(|error| {
         Failure::bad_input(format_args!("cannot read {}: {error}", file.display()))
     })?;

@@ -5,7 +5,7 @@ mod read;
 #[cfg(test)]
 mod tests;
 
-use agent_core::model::{FactChange, Symbol, Time};
+use agent_core::model::{Fact, FactChange, Symbol, Time};
 use agent_core::protocol::{Command, GoalId, GoalRequest};
 
 pub(crate) use play::{Player, Told};
@@ -38,12 +38,24 @@ pub(crate) enum When {
     At(Time),
     /// When the robot is seen well on this arc.
     WhileOn(Symbol),
+    /// When an agent is in the middle of an action.
+    WhileDoing {
+        agent: Symbol,
+        /// The action's name.
+        action: Symbol,
+    },
+    /// When somebody has learnt that this is so.
+    Once(Fact),
 }
 
 /// What happens.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum What {
-    Goal(GoalRequest),
+    Goal {
+        request: GoalRequest,
+        /// The vehicle that it is for, where there are several.
+        to: Option<Symbol>,
+    },
     Command(Command),
     Fact(FactChange),
 }
@@ -53,7 +65,7 @@ impl Scenario {
     pub(crate) fn goals(&self) -> impl Iterator<Item = &GoalId> {
         self.events.iter().filter_map(|event| match &event.what {
             // The reader has given each a name.
-            Some(What::Goal(goal)) => goal.id.as_ref(),
+            Some(What::Goal { request, .. }) => request.id.as_ref(),
             _ => None,
         })
     }

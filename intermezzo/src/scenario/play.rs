@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use agent_core::model::{Symbol, Time};
+use agent_core::model::{FactChange, Symbol, Time};
 use agent_core::protocol::{Event, GoalId, Happening};
 use agent_link::{Client, Clock};
 use tokio::sync::mpsc;
@@ -16,6 +16,9 @@ const WELL_ON: std::ops::Range<f64> = 0.35..0.75;
 /// On a busy machine at high speed a robot may cross an arc between two pictures. So long after it
 /// has been sent along it, it has turned towards it and set off.
 const SETTING_OFF: Time = Time(4_500_000);
+
+/// So long after an action has begun it is in full swing.
+const IN_FULL_SWING: Time = Time(3_000_000);
 
 /// What a story has come to.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,18 +37,26 @@ pub(crate) struct Player {
     events: std::vec::IntoIter<ScenarioEvent>,
     next: Option<ScenarioEvent>,
     ready: Time,
-    /// When a robot that was sent along the arc of the next event is well on it.
-    well_on_at: Option<Time>,
+    /// When the next event is due, if what it waits for has come: a robot that was sent along an arc is
+    /// well on it by then.
+    due_at: Option<Time>,
     /// The goals that have not ended.
     open: BTreeSet<GoalId>,
+    /// Whoever takes goals, where that is not a parent.
+    vehicles: BTreeSet<Symbol>,
     failed: Vec<String>,
     deeds: mpsc::UnboundedSender<ScenarioEvent>,
     refusals: mpsc::UnboundedReceiver<(ScenarioEvent, String)>,
 }
 
 impl Player {
-    /// Begins to play to a robot that is ready now.
-    pub(crate) fn new(scenario: Scenario, client: Client, ready: Time) -> Self {
+    /// Begins to play to a robot, or to these vehicles, which are ready now.
+    pub(crate) fn new(
+        scenario: Scenario,
+        client: Client,
+        ready: Time,
+        vehicles: BTreeSet<Symbol>,
+    ) -> Self {
         let (deeds, mut to_do) = mpsc::unbounded_channel::<ScenarioEvent>();
         let (refuse, refusals) = mpsc::unbounded_channel();
         tokio::spawn(async move {
@@ -62,8 +73,9 @@ impl Player {
             next: events.next(),
             events,
             ready,
-            well_on_at: None,
+            due_at: None,
             open,
+            vehicles,
             failed: Vec::new(),
             deeds,
             refusals,
@@ -75,7 +87,7 @@ impl Player {
         let due = match self.next.as_ref().map(|event| &event.when) {
             Some(When::Next) => Some(Time::ZERO),
             Some(When::At(at)) => Some(self.ready + *at),
-            Some(When::WhileOn(_)) => self.well_on_at,
+            Some(When::WhileOn(_) | When::WhileDoing { .. } | When::Once(_)) => self.due_at,
             None => None,
         };
         let due = async {
@@ -109,7 +121,7 @@ impl Player {
     }
 
     fn go_on(&mut self) -> Option<Told> {
-        self.well_on_at = None;
+        self.due_at = None;
         let event = std::mem::replace(&mut self.next, self.events.next())?;
         // The task lives as long as this.
         let _ = self.deeds.send(event.clone());
@@ -117,8 +129,8 @@ impl Player {
     }
 
     fn refused(&mut self, event: ScenarioEvent, reason: String) -> Told {
-        if let Some(What::Goal(goal)) = &event.what
-            && let Some(id) = &goal.id
+        if let Some(What::Goal { request, .. }) = &event.what
+            && let Some(id) = &request.id
         {
             self.open.remove(id);
         }
@@ -128,15 +140,14 @@ impl Player {
 
     /// An agent has told something.
     pub(crate) fn heard(&mut self, agent: &Symbol, event: &Event) {
-        if *agent == executor_sim::program::EXECUTOR
-            && let Happening::ActionStarted { action, .. } | Happening::ActionResumed { action, .. } =
-                &event.what
-            && let Some(When::WhileOn(arc)) = self.next.as_ref().map(|next| &next.when)
-            && action.args.contains(arc)
+        if let Some(due_at) = self
+            .next
+            .as_ref()
+            .and_then(|next| is_due(&next.when, agent, event))
         {
-            self.well_on_at = Some(event.at + SETTING_OFF);
+            self.due_at = Some(due_at);
         }
-        let Some(goal) = event.goal.as_ref().filter(|_| *agent == parent_agent::NAME) else {
+        let Some(goal) = event.goal.as_ref().filter(|_| self.takes_goals(agent)) else {
             return;
         };
         match &event.what {
@@ -152,6 +163,11 @@ impl Player {
         }
     }
 
+    /// Whether goals that a user gives are this agent's.
+    fn takes_goals(&self, agent: &Symbol) -> bool {
+        *agent == parent_agent::NAME || self.vehicles.contains(agent)
+    }
+
     /// Whether every goal of the story that was begun has ended, and nothing more comes by itself.
     ///
     /// An event that waits for the robot to be on some arc does not come any more when the robot
@@ -162,7 +178,7 @@ impl Player {
             .iter()
             .chain(self.events.as_slice())
             .filter_map(|event| match &event.what {
-                Some(What::Goal(goal)) => goal.id.as_ref(),
+                Some(What::Goal { request, .. }) => request.id.as_ref(),
                 _ => None,
             })
             .collect();
@@ -179,7 +195,8 @@ impl Player {
                     ));
                     true
                 }
-                When::Next | When::At(_) => false,
+                // Others may bring it about.
+                When::Next | When::At(_) | When::WhileDoing { .. } | When::Once(_) => false,
             },
         }
     }
@@ -190,13 +207,43 @@ impl Player {
     }
 }
 
+/// When what an event waits for is due, now that this was heard.
+fn is_due(when: &When, agent: &Symbol, event: &Event) -> Option<Time> {
+    match (when, &event.what) {
+        (
+            When::WhileOn(arc),
+            Happening::ActionStarted { action, .. } | Happening::ActionResumed { action, .. },
+        ) if *agent == executor_sim::program::EXECUTOR && action.args.contains(arc) => {
+            Some(event.at + SETTING_OFF)
+        }
+        (
+            When::WhileDoing {
+                agent: wanted,
+                action: name,
+            },
+            Happening::ActionStarted { action, .. } | Happening::ActionResumed { action, .. },
+        ) if agent == wanted && action.name == *name => Some(event.at + IN_FULL_SWING),
+        (When::Once(fact), Happening::BeliefChanged { changes })
+            if changes.contains(&FactChange::Add(fact.clone())) =>
+        {
+            Some(event.at)
+        }
+        _ => None,
+    }
+}
+
 /// Has the robot told. In its words why not, if it does not want that.
 async fn do_it(client: &Client, event: &ScenarioEvent) -> Result<(), String> {
     let words = |error: agent_link::ClientError| error.to_string();
     let (accepted, reason) = match &event.what {
         None => return Ok(()),
-        Some(What::Goal(goal)) => {
-            let verdict = client.goal(goal.clone()).await.map_err(words)?;
+        Some(What::Goal { request, to }) => {
+            let request = request.clone();
+            let verdict = match to {
+                Some(vehicle) => client.goal_to(vehicle.as_str(), request).await,
+                None => client.goal(request).await,
+            };
+            let verdict = verdict.map_err(words)?;
             (verdict.accepted, verdict.reason)
         }
         Some(What::Command(command)) => {

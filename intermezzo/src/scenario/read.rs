@@ -12,13 +12,16 @@ use toml::de::{DeTable, DeValue};
 use super::{Scenario, ScenarioEvent, What, When};
 
 /// What an event may say of itself.
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 17] = [
     "at_s",
     "while_on",
+    "while_doing",
+    "once",
     "say",
     "goal",
     "emergency",
     "id",
+    "to",
     "priority",
     "deadline_s",
     "door",
@@ -144,7 +147,7 @@ impl Reader<'_> {
         for (name, (_, span)) in fields {
             let belongs_to = match name {
                 "state" => "door",
-                "id" | "priority" | "deadline_s" => "goal or emergency",
+                "id" | "to" | "priority" | "deadline_s" => "goal or emergency",
                 // The others are taken out above, or reported as one deed too many.
                 _ => continue,
             };
@@ -166,24 +169,53 @@ impl Reader<'_> {
 
     fn when(&mut self, fields: &mut Fields<'_>) -> When {
         let at = self.number_of(fields, "at_s");
-        let arc = self.text_of_spanned(fields, "while_on");
-        match (at, arc) {
-            (Some((_, span)), Some(_)) => {
-                self.fault(span, "an event has `at_s` or `while_on`, not both");
+        let [arc, doing, once] =
+            ["while_on", "while_doing", "once"].map(|name| self.text_of_spanned(fields, name));
+        let given = [
+            at.as_ref().map(|(_, span)| span),
+            arc.as_ref().map(|(_, span)| span),
+            doing.as_ref().map(|(_, span)| span),
+            once.as_ref().map(|(_, span)| span),
+        ];
+        if let [first, _, ..] = given.into_iter().flatten().collect::<Vec<_>>().as_slice() {
+            let message = "an event has one of `at_s`, `while_on`, `while_doing` and `once`";
+            self.fault((*first).clone(), message);
+            return When::Next;
+        }
+        if let Some((at_s, span)) = at {
+            if at_s >= 0.0 {
+                return When::At(Time::from_secs(at_s));
             }
-            (Some((at_s, _)), None) if at_s >= 0.0 => return When::At(Time::from_secs(at_s)),
-            (Some((_, span)), None) => {
-                self.fault(span, "`at_s` counts from when the robot is ready")
+            self.fault(span, "`at_s` counts from when the robot is ready");
+        }
+        if let Some((arc, span)) = arc {
+            if self.site.passage(&arc).is_none() {
+                let arcs = self.site.passages().map(|arc| arc.name().as_str());
+                let message = unknown("arc", &arc, nearest(&arc, arcs));
+                self.fault(span, message);
             }
-            (None, Some((arc, span))) => {
-                if self.site.passage(&arc).is_none() {
-                    let arcs = self.site.passages().map(|arc| arc.name().as_str());
-                    let message = unknown("arc", &arc, nearest(&arc, arcs));
-                    self.fault(span, message);
+            return When::WhileOn(arc.into());
+        }
+        if let Some((words, span)) = doing {
+            match words.split_whitespace().collect::<Vec<_>>().as_slice() {
+                [agent, action] => {
+                    return When::WhileDoing {
+                        agent: Symbol::from(*agent),
+                        action: Symbol::from(*action),
+                    };
                 }
-                return When::WhileOn(arc.into());
+                _ => self.fault(
+                    span,
+                    "`while_doing` is an agent and an action, such as \"k3 grasp\"",
+                ),
             }
-            (None, None) => {}
+        }
+        if let Some((text, span)) = once {
+            match parse_fact_change(&text) {
+                Ok(FactChange::Add(fact)) => return When::Once(fact),
+                Ok(_) => self.fault(span, "`once` is a fact, such as \"(served ann cola)\""),
+                Err(error) => self.fault(span, error.to_string()),
+            }
         }
         When::Next
     }
@@ -276,13 +308,17 @@ impl Reader<'_> {
             }
             None => None,
         };
-        Some(What::Goal(GoalRequest {
-            id: Some(id),
-            tasks,
-            urgency,
-            priority,
-            deadline,
-        }))
+        let to = self.text_of(fields, "to").map(Symbol::from);
+        Some(What::Goal {
+            request: GoalRequest {
+                id: Some(id),
+                tasks,
+                urgency,
+                priority,
+                deadline,
+            },
+            to,
+        })
     }
 
     /// A name for a goal that has none: what becomes of it has to be told from the others'.

@@ -32,7 +32,11 @@ fn a_story_is_read_in_its_order_and_every_goal_has_a_name() {
     let names: Vec<&str> = story.goals().map(GoalId::as_str).collect();
     assert_eq!(names, ["goal1", "toilet"]);
     assert_eq!(story.events[1].when, When::WhileOn("arc5".into()));
-    let Some(What::Goal(toilet)) = &story.events[1].what else {
+    let Some(What::Goal {
+        request: toilet,
+        to: None,
+    }) = &story.events[1].what
+    else {
         unreachable!("the second event is a goal");
     };
     assert_eq!((toilet.urgency, toilet.priority), (Urgency::Emergency, 2));
@@ -94,4 +98,59 @@ fn what_is_not_toml_is_named_with_its_line_too() {
 #[test]
 fn the_built_in_story_is_in_order() {
     assert!(read(crate::command::demo::STORY).is_ok());
+}
+
+#[test]
+fn a_story_of_a_team_waits_for_what_its_vehicles_do_and_learn() {
+    let story = read(
+        r#"
+        [[event]]
+        while_doing = "k3 put-on-tray"
+        emergency = "(clean table3)"
+        to = "k3"
+        [[event]]
+        once = "(served ann cola)"
+        say = "Cheers."
+        "#,
+    )
+    .unwrap();
+    let [spill, cheers] = story.events.as_slice() else {
+        unreachable!("two events");
+    };
+    let doing = When::WhileDoing {
+        agent: "k3".into(),
+        action: "put-on-tray".into(),
+    };
+    assert_eq!(spill.when, doing);
+    let Some(What::Goal { to: Some(to), .. }) = &spill.what else {
+        unreachable!("the first event is a goal for somebody");
+    };
+    assert_eq!(to, "k3");
+    let served = agent_core::model::Atom::new("served", ["ann", "cola"]);
+    assert_eq!(cheers.when, When::Once(served));
+}
+
+#[test]
+fn one_thing_is_waited_for_at_a_time() {
+    let faults = read(
+        r#"[[event]]
+at_s = 1
+once = "(served ann cola)"
+say = "?"
+[[event]]
+while_doing = "k3"
+say = "?"
+[[event]]
+once = "(not (served ann cola))"
+say = "?"
+"#,
+    );
+    let faults = faults.unwrap_err();
+    assert_eq!(faults.len(), 3, "{faults:?}");
+    assert!(faults[0].contains("one of `at_s`"), "{}", faults[0]);
+    assert!(
+        faults[1].contains("an agent and an action"),
+        "{}",
+        faults[1]
+    );
 }

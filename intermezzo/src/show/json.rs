@@ -56,7 +56,7 @@ impl Screen for JsonLines {
         }
         match &event.what {
             None => {}
-            Some(What::Goal(goal)) => {
+            Some(What::Goal { request: goal, .. }) => {
                 body["goal"] = json!(goal.id.as_ref().map(Symbol::as_str));
                 let tasks = goal.tasks.iter().map(ToString::to_string);
                 body["tasks"] = tasks.collect::<Value>();

@@ -1,6 +1,7 @@
 //! Showing what a robot does, while it does it.
 
 mod alternatives;
+mod columns;
 mod json;
 mod people;
 mod progress;

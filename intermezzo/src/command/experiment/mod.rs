@@ -1,6 +1,7 @@
 //! `experiment`: measures something, and reports it.
 
 mod progress;
+mod restaurant;
 mod scaling;
 
 use std::io::{self, Write};
@@ -29,6 +30,9 @@ pub(crate) fn run_alone(what: &ExperimentCommand) -> Option<Result<Exit, Failure
             Some(planner) => scaling::memory(args, planner),
             None => measure(&|progress| scaling::run(args, progress)),
         }),
+        ExperimentCommand::Restaurant(args) => {
+            Some(measure(&|progress| restaurant::run(args, progress)))
+        }
         ExperimentCommand::Latency(_) | ExperimentCommand::Fleet(_) => None,
     }
 }
@@ -43,9 +47,9 @@ pub(crate) async fn run(what: ExperimentCommand) -> Result<Exit, Failure> {
     let report = match &what {
         ExperimentCommand::Latency(args) => Latency::of(args).run(&mut progress, stopped).await,
         ExperimentCommand::Fleet(args) => Fleet::of(args).run(&mut progress, stopped).await,
-        ExperimentCommand::Replanning(_) | ExperimentCommand::Scaling(_) => {
-            Err(Failure::failed("it needs no robot"))
-        }
+        ExperimentCommand::Replanning(_)
+        | ExperimentCommand::Scaling(_)
+        | ExperimentCommand::Restaurant(_) => Err(Failure::failed("it needs no robot")),
     };
     match report {
         Ok(report) => end(what.report_options(), progress, Ok::<_, String>(report)),

@@ -378,11 +378,7 @@ impl World {
         vehicle.sees.clear();
         let work = std::mem::take(&mut vehicle.work);
         for work in work.into_values() {
-            let until = match work.since {
-                Some(_) => self.now + self.chance.within(0.0, rest),
-                // It stood still already, or was about to.
-                None => work.busy_until,
-            };
+            let until = self.now + self.chance.within(0.0, rest);
             self.vehicles[who].resting.insert(work.task, until);
         }
         self.look_again(who, 0.01, 0.05);
