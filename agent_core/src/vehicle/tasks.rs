@@ -135,10 +135,14 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
         }
     }
 
-    fn end_execution(&mut self, id: &ActionId, report: Report) {
+    fn end_execution(&mut self, id: &ActionId, mut report: Report) {
         let Some(taken) = self.tasks.taken().get(id) else {
             return;
         };
+        if taken.given_up && matches!(report, Report::Failure { .. }) {
+            let facts = Vec::new();
+            report = Report::Suspended { facts };
+        }
         let to = taken.publisher.clone();
         self.tasks.let_go(id);
         if to == self.name {

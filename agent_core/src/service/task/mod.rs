@@ -209,7 +209,8 @@ pub enum TaskOutput {
         /// Which.
         id: ActionId,
     },
-    /// Stop that execution, which is not ours any more, forget it, and report so.
+    /// Stop that execution, which is not ours any more, forget it, and report so
+    /// ([`Report::Suspended`]: it has not failed).
     GiveUp {
         /// Who has given it.
         publisher: Symbol,

@@ -99,7 +99,14 @@ impl TaskService {
             return;
         };
         match report {
-            Report::Started | Report::Progress { .. } | Report::Suspended { .. } => {}
+            Report::Started | Report::Progress { .. } => {}
+            // It was given up, and has not failed: its vehicle was started again, or has not heard of
+            // us for too long.
+            Report::Suspended { .. } => {
+                if current.is_some() {
+                    self.open_again(&task);
+                }
+            }
             Report::Success { .. } => {
                 self.take_back_from_others(&task, id);
                 let by = Some(by.clone());

@@ -53,8 +53,8 @@ fn run(seed: u64, faults: Faults, sums: &mut Sums) {
                 sums.failed += 1;
             }
             None if world.is_dead(*publisher) => sums.stay_with_the_dead += 1,
-            // Whoever could do it may be dead for good.
-            None if done == 0 && faults.vehicles => sums.stay_with_the_dead += 1,
+            // Whoever could do it, or has done it, may be dead for good.
+            None if world.anybody_is_dead() => sums.stay_with_the_dead += 1,
             other => panic!(
                 "seed {seed}: {task} is {other:?}, done {done} times\n{}",
                 log()

@@ -234,6 +234,10 @@ impl World {
         self.vehicles[vehicle].service.is_some()
     }
 
+    pub fn anybody_is_dead(&self) -> bool {
+        self.vehicles.iter().any(|vehicle| vehicle.dead_for_good)
+    }
+
     pub fn is_dead(&self, vehicle: usize) -> bool {
         self.vehicles[vehicle].dead_for_good
     }
@@ -284,7 +288,8 @@ impl World {
                     service.let_go(&id);
                 });
                 if knows {
-                    self.send(who, publisher, Parcel::Report(id, failure("given up")));
+                    let given_up = Report::Suspended { facts: Vec::new() };
+                    self.send(who, publisher, Parcel::Report(id, given_up));
                 }
             }
             What::Work(who, id, version) => self.finish(who, &id, version),
@@ -373,13 +378,19 @@ impl World {
         let vehicle = &mut self.vehicles[who];
         vehicle.service = None;
         vehicle.frozen = false;
-        vehicle.waiting.clear();
+        let waiting = std::mem::take(&mut vehicle.waiting);
         vehicle.dead_for_good = again.is_none();
         vehicle.sees.clear();
         let work = std::mem::take(&mut vehicle.work);
         for work in work.into_values() {
             let until = self.now + self.chance.within(0.0, rest);
             self.vehicles[who].resting.insert(work.task, until);
+        }
+        // What nobody has acknowledged is asked for again.
+        for what in waiting {
+            if matches!(what, What::Publish(..)) {
+                self.at(self.now, what);
+            }
         }
         self.look_again(who, 0.01, 0.05);
         if let Some(after) = again {
@@ -399,7 +410,16 @@ impl World {
         service
             .recall(&vehicle.rows)
             .expect("what was written can be read");
-        vehicle.service = Some(service);
+        // What it has given to itself it goes on with.
+        let taken = service.taken().iter();
+        let own: Vec<(ActionId, Taken)> = taken
+            .filter(|(_, taken)| taken.publisher == NAMES[who])
+            .map(|(id, taken)| (id.clone(), taken.clone()))
+            .collect();
+        for (id, taken) in own {
+            self.begin(who, &mut service, &id, taken.task, taken.what, who);
+        }
+        self.vehicles[who].service = Some(service);
         self.look_again(who, 0.0, 0.1);
         for other in 0..self.vehicles.len() {
             self.soon(0.0, 0.1, What::Parcel(other, who));
