@@ -131,9 +131,13 @@ The story: a robot guides a visitor from the entrance (n1) to the main hall (n40
 a corridor somebody needs the toilet, and on the way there a child feels ill. While the tour waits, a
 door on its way closes. The robot comes back to the tour with another plan, and arrives.
 
-It is the scenario file intermezzo/scenarios/demo.toml, which `intermezzo up --scenario` reads too.
+In the restaurant one vehicle sees who comes in, one takes orders, and one serves. Two guests are served in one round; while the
+second drink is being grasped, somebody knocks over a vase.
+
+They are the scenario files demo.toml and restaurant.toml in intermezzo/scenarios, which `intermezzo up --scenario` reads too.
 
 Examples:
+  intermezzo demo restaurant    three vehicles, side by side
   intermezzo demo --speed 5     slower, to watch the robot stop and turn
   intermezzo demo --json        one event a line, for programs")]
 pub(crate) struct DemoArgs {
