@@ -1,6 +1,6 @@
 //! What became of an evening in the restaurant: who did what when, and who waited for how long.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use agent_core::model::{Action, FactChange, Symbol, Time};
 use agent_core::protocol::{ActionId, Event, Happening};
@@ -86,6 +86,17 @@ impl Course {
             .collect();
         deeds.sort_by_key(|deed| (deed.begun, deed.ended));
         deeds
+    }
+
+    /// A bottle that two guests were given, one after the other.
+    pub fn handed_over_twice(&self) -> Option<&Symbol> {
+        let mut seen = BTreeSet::new();
+        let given = self
+            .deeds
+            .iter()
+            .filter(|deed| deed.action.name == "put-drink");
+        let mut bottles = given.filter_map(|deed| deed.action.args.first());
+        bottles.find(|bottle| !seen.insert(*bottle))
     }
 
     /// When the last guest was served.

@@ -276,6 +276,10 @@ impl Evenings {
     fn add(&mut self, name: &str, setting: &Setting, seed: u64) -> Result<(), ExperimentError> {
         let course = serve(name, setting, Some(seed), |_| Ok(()))?;
         self.combined += course.combined;
+        if let Some(twice) = course.handed_over_twice() {
+            let why = format!("{twice} is handed over twice (seed {seed})");
+            return Err(ExperimentError::course(name, why));
+        }
         let mut first_s = f64::INFINITY;
         for (guest, plan) in &setting.restaurant.room().guests {
             let sat_s = plan.sits_s.unwrap_or_default();
