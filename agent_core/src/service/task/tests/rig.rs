@@ -383,7 +383,11 @@ impl World {
         vehicle.sees.clear();
         let work = std::mem::take(&mut vehicle.work);
         for work in work.into_values() {
-            let until = self.now + self.chance.within(0.0, rest);
+            let until = match work.since {
+                Some(_) => self.now + self.chance.within(0.0, rest),
+                // It stood still already, or was about to.
+                None => work.busy_until,
+            };
             self.vehicles[who].resting.insert(work.task, until);
         }
         // What nobody has acknowledged is asked for again.
@@ -417,6 +421,7 @@ impl World {
             .map(|(id, taken)| (id.clone(), taken.clone()))
             .collect();
         for (id, taken) in own {
+            self.vehicles[who].resting.remove(&taken.task);
             self.begin(who, &mut service, &id, taken.task, taken.what, who);
         }
         self.vehicles[who].service = Some(service);
