@@ -1,7 +1,7 @@
 //! A vehicle: an agent that shares tasks and facts with others of its team.
 //!
 //! One machine, made of the agent that plans and acts ([`Mind`]), the
-//! [`TaskService`](crate::service::TaskService) and the [`StateService`](crate::service::StateService).
+//! [`TaskService`] and the [`StateService`].
 //! What the vehicles say to each other comes and goes as [`Message`]s; a task that one of them gets is
 //! an instruction of the one that has published it, and becomes a goal of its own.
 

@@ -139,7 +139,7 @@ fn happening() -> impl Strategy<Value = Happening> {
         vec(atom(), 0..3).prop_map(|blocked_by| H::GoalBlocked { blocked_by }),
         atom().prop_map(|what| H::TaskOffered {
             what,
-            urgency: agent_core::protocol::Urgency::Emergency
+            urgency: Urgency::Emergency
         }),
         (atom(), atom()).prop_map(|(what, to)| H::TaskGiven { what, to: to.name }),
         (atom(), option::of(atom()), option::of(words())).prop_map(|(what, by, failure)| {
