@@ -1,7 +1,7 @@
 //! The second paper's two cases: not only their totals but what is done in them.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use experiments::{Case, PAPER_WAITS_S, RATIO_BAND, Restaurants, both_cases, restaurant};
+use experiments::{Case, Cell, PAPER_WAITS_S, RATIO_BAND, Restaurants, both_cases, restaurant};
 
 /// What a vehicle did after the second guest had sat down, without names of bottles, slots and ways.
 fn plan(case: &Case, vehicle: &str) -> Vec<String> {
@@ -118,4 +118,20 @@ fn everybody_is_served_in_small_evenings_and_the_report_says_how_soon() {
         ]
     );
     assert_eq!(report.tables[2].rows.len(), 8);
+}
+
+#[test]
+fn nothing_fails_where_one_carrier_serves_and_nobody_disturbs_it() {
+    let what = Restaurants {
+        runs: 1,
+        guests: vec![10],
+        carriers: vec![1],
+        evenings: 3,
+        seed: 1,
+    };
+    let report = restaurant(&what, &mut ()).expect("everybody is served");
+    let evenings = &report.tables[2];
+    for row in &evenings.rows {
+        assert_eq!(row.last(), Some(&Cell::Count(0)), "{row:?}");
+    }
 }

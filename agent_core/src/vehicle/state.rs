@@ -51,7 +51,8 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
         }
     }
 
-    /// What the running actions hang on.
+    /// What the running actions hang on, as far as others can see it: a fact about a vehicle's own body names
+    /// no vehicle, and the others would answer it with where they are themselves.
     pub(super) fn watched(&self) -> BTreeSet<Fact> {
         let mut facts = BTreeSet::new();
         for action in self.mind.executing() {
@@ -59,7 +60,9 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
                 continue;
             };
             for clause in model.protected.iter().chain(&model.goal_states) {
-                if let Clause::Fact(_, pattern) = clause {
+                if let Clause::Fact(_, pattern) = clause
+                    && self.model.shared.contains(&pattern.name)
+                {
                     facts.extend(instance(pattern, action));
                 }
             }

@@ -34,7 +34,8 @@ guest's waiting time in case 1 by that in case 2; in the runs every action's dur
 0.85 and 1.15, from the seed, and what the vehicles plan with stays the same.
 
 The evenings: guests come at random, on average every 30 s, to three tables; a watcher, a waiter and so many carriers serve them, \
-each working on up to four goals together or on one after the other. The same guests come whoever serves.";
+each working on up to four goals together or on one after the other. The same guests come whoever serves. combined counts the layers with more \
+than one action, failures what has failed and was repaired, as when two carriers reach for one bottle.";
 
 /// What is measured.
 #[derive(Clone, Debug)]
@@ -234,6 +235,8 @@ struct Evenings {
     /// From when the first guest has sat down until the last one was served, one for each evening.
     took_s: Vec<f64>,
     combined: u64,
+    /// Actions and goals that have failed.
+    failures: usize,
 }
 
 fn measure_evenings(
@@ -253,6 +256,7 @@ fn measure_evenings(
                     waited_s: Vec::new(),
                     took_s: Vec::new(),
                     combined: 0,
+                    failures: 0,
                 };
                 for number in 0..what.evenings {
                     if onlooker.has_seen_enough() {
@@ -276,6 +280,7 @@ impl Evenings {
     fn add(&mut self, name: &str, setting: &Setting, seed: u64) -> Result<(), ExperimentError> {
         let course = serve(name, setting, Some(seed), |_| Ok(()))?;
         self.combined += course.combined;
+        self.failures += course.failures.len();
         if let Some(twice) = course.handed_over_twice() {
             let why = format!("{twice} is handed over twice (seed {seed})");
             return Err(ExperimentError::course(name, why));
@@ -311,6 +316,7 @@ fn evening_table(evenings: &[Evenings]) -> Table {
             "waited_max_s",
             "evening_median_s",
             "combined",
+            "failures",
         ],
     );
     for kind in evenings {
@@ -325,6 +331,7 @@ fn evening_table(evenings: &[Evenings]) -> Table {
             waited.max.into(),
             took.median.into(),
             kind.combined.into(),
+            kind.failures.into(),
         ]);
     }
     table
