@@ -1,11 +1,11 @@
 //! What an action needs and what it does, as plain facts.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
-use crate::model::{Action, Belief, Clause, Fact, FactChange, Symbol, Time};
+use crate::model::{Action, Clause, Fact, Symbol, Time};
 use crate::planner::{
     Plan, Problem, Step, adds_and_removes, hangs_on, instance, number_of, protected_by,
+    with_changes,
 };
 
 /// Facts, and whether they have to hold.
@@ -120,7 +120,7 @@ impl Candidate {
             .filter(|(fact, wanted)| holds(fact) != **wanted)
             .map(|(fact, wanted)| (fact.clone(), *wanted))
             .collect();
-        let after = after(problem, footprint.effects());
+        let after = with_changes(problem, footprint.effects());
         let later = (hangs_on(&after, rest, false).into_iter())
             .map(|reliance| (reliance.fact, reliance.wanted))
             .collect();
@@ -140,23 +140,5 @@ impl Candidate {
         self.footprint
             .effects()
             .filter(move |effect| !some || needed(effect))
-    }
-}
-
-/// The problem as it is once these facts are so.
-pub(super) fn after<'f>(
-    problem: &Problem,
-    changes: impl IntoIterator<Item = (&'f Fact, bool)>,
-) -> Problem {
-    let mut belief = Belief::clone(&problem.belief);
-    for (fact, holds) in changes {
-        belief.apply(&match holds {
-            true => FactChange::Add(fact.clone()),
-            false => FactChange::Remove(fact.clone()),
-        });
-    }
-    Problem {
-        belief: Arc::new(belief),
-        ..problem.clone()
     }
 }

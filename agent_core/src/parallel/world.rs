@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::clique::World;
-use super::footprint::{Footprint, after};
+use super::footprint::Footprint;
 use crate::model::{Fact, Time};
-use crate::planner::{Item, Problem, Step, TaskList, ways_to};
+use crate::planner::{Item, Problem, Step, TaskList, ways_to, with_changes};
 
 /// What is believed now, and what actions there are.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ impl World for Present<'_> {
     }
 
     fn mending(&self, changes: &BTreeMap<Fact, bool>, fact: &Fact, wanted: bool) -> Option<Time> {
-        let then = after(self.0, changes.iter().map(|(fact, holds)| (fact, *holds)));
+        let then = with_changes(self.0, changes.iter().map(|(fact, holds)| (fact, *holds)));
         let ways = ways_to(&then, fact, wanted).into_iter().map(|action| {
             let step = Step {
                 item: Item::Task(action),

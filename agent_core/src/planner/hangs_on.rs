@@ -72,7 +72,7 @@ pub fn hangs_on(problem: &Problem, steps: &[Step], running: bool) -> Vec<Relianc
 }
 
 /// The problem if some facts held, or did not.
-pub(super) fn with_changes<'f>(
+pub(crate) fn with_changes<'f>(
     problem: &Problem,
     changes: impl IntoIterator<Item = (&'f Fact, bool)>,
 ) -> Problem {

@@ -30,6 +30,7 @@ pub use any::{AnyPlanner, PlannerKind};
 pub use arising::{Arisen, arising, asks_for};
 pub use detour::is_detour;
 pub use graph::GraphPlanner;
+pub(crate) use hangs_on::with_changes;
 pub use hangs_on::{Reliance, hangs_on};
 pub use naive::NaivePlanner;
 pub use nearer::may_begin_with;

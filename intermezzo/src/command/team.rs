@@ -29,22 +29,9 @@ pub(super) async fn run(
         return Err(Failure::bad_input(what));
     }
     let setup = Setup {
-        robot: args.robot,
-        place: folder,
-        start: args.start,
-        speed: args.speed,
-        planner: args.planner,
-        faults: args.faults,
-        listen: args.listen,
-        connect: args.connect,
-        zenoh_config: args.zenoh_config,
-        state: args.state,
-        world_elsewhere: false,
-        hang_limit: args.hang_limit,
-        security: args.security,
-        limits: args.limits,
         vehicles: restaurant.room().vehicles.keys().cloned().collect(),
         together: args.together,
+        ..super::up::setup(&args, folder)
     };
     let performance = Performance {
         scenario,

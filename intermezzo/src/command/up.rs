@@ -1,7 +1,7 @@
 //! `intermezzo up`: a robot until Ctrl-C.
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use agent_core::model::Time;
 use agent_link::{Client, View};
@@ -39,24 +39,7 @@ pub(crate) async fn run(args: UpArgs) -> Result<Exit, Failure> {
         None => None,
         Some(file) => Some(read_scenario(file, place.site())?),
     };
-    let setup = Setup {
-        robot: args.robot,
-        place: folder,
-        start: args.start,
-        speed: args.speed,
-        planner: args.planner,
-        faults: args.faults,
-        listen: args.listen,
-        connect: args.connect,
-        zenoh_config: args.zenoh_config,
-        state: args.state,
-        world_elsewhere: args.no_world,
-        hang_limit: args.hang_limit,
-        security: args.security,
-        limits: args.limits,
-        vehicles: Vec::new(),
-        together: None,
-    };
+    let setup = setup(&args, folder);
     let performance = Performance {
         scenario,
         until_done: args.until_done,
@@ -64,6 +47,28 @@ pub(crate) async fn run(args: UpArgs) -> Result<Exit, Failure> {
         from_the_start: false,
     };
     perform(&setup, &place, performance).await
+}
+
+/// What the options say of a robot, or of what is common to a room and its vehicles.
+pub(super) fn setup(args: &UpArgs, place: Option<PathBuf>) -> Setup {
+    Setup {
+        robot: args.robot.clone(),
+        place,
+        start: args.start.clone(),
+        speed: args.speed,
+        planner: args.planner,
+        faults: args.faults,
+        listen: args.listen.clone(),
+        connect: args.connect.clone(),
+        zenoh_config: args.zenoh_config.clone(),
+        state: args.state.clone(),
+        world_elsewhere: args.no_world,
+        hang_limit: args.hang_limit,
+        security: args.security.clone(),
+        limits: args.limits,
+        vehicles: Vec::new(),
+        together: None,
+    }
 }
 
 /// Starts a robot, shows what it does, and ends it.
