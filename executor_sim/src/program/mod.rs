@@ -5,6 +5,7 @@ mod controller;
 mod room;
 mod shown_room;
 mod shown_world;
+mod time_keeping;
 mod world;
 
 use agent_link::RoleError;

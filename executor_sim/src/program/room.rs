@@ -1,23 +1,17 @@
 //! The room of several vehicles as a program.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use agent_link::options::LinkOptions;
-use agent_link::{Clock, Keys, Memory, RoleError, Wiring, drive_agent, next_epoch, session};
+use agent_link::{Keys, Memory, RoleError, Wiring, drive_agent, next_epoch};
 use clap::Args;
 
 use super::ProgramError;
 use super::controller::RATES;
 use super::shown_room::ShownRoom;
+use super::time_keeping::{keeping_time, snapshots_every};
 use crate::{ROOM, Room, Tempo};
 
-/// Ten pictures a second look like motion …
-const LONGEST_PERIOD: Duration = Duration::from_millis(100);
-/// … but at high speed a vehicle is nowhere for long, and who waits to see it there must not miss it.
-const ROOM_S_BETWEEN_SNAPSHOTS: f64 = 1.0;
-/// More often is a load and no help.
-const SHORTEST_PERIOD: Duration = Duration::from_millis(10);
 /// How much more or less time things take with `--varied`.
 const VARIED: f64 = 0.15;
 
@@ -61,33 +55,15 @@ pub async fn run(args: RoomArgs) -> Result<(), ProgramError> {
 
 async fn drive_room(room: Room, memory: Memory, args: &RoomArgs) -> Result<(), RoleError> {
     let keys = args.link.keys()?;
-    let noted = args.link.state_file("clock.json")?;
-    let clock = match &noted {
-        Some(file) => Clock::continued(file, args.speed)?,
-        None => Clock::start(args.speed)?,
-    };
-    let period = ROOM_S_BETWEEN_SNAPSHOTS / args.speed;
-    let period = Duration::try_from_secs_f64(period).unwrap_or(LONGEST_PERIOD);
     let wiring = Wiring {
-        snapshots_every: Some(period.clamp(SHORTEST_PERIOD, LONGEST_PERIOD)),
+        snapshots_every: Some(snapshots_every(args.speed)),
         ..wiring(&keys, next_epoch(&memory)?)
     };
-    let session = args.link.open().await?;
-    let service = clock.serve(&session, &keys).await;
-    let driven = match service {
-        Err(error) => Err(error.into()),
-        Ok(_service) => {
-            let room = ShownRoom::new(room, clock);
-            let shutdown = args.link.shutdown();
-            let driven = drive_agent(room, memory, wiring, &session, clock, shutdown).await;
-            driven.map(|_| ()).map_err(RoleError::from)
-        }
-    };
-    session::close(session).await;
-    if let Some(file) = &noted {
-        clock.stop(file)?;
-    }
-    driven
+    keeping_time(&args.link, &keys, args.speed, async |session, clock| {
+        let room = ShownRoom::new(room, clock);
+        drive_agent(room, memory, wiring, session, clock, args.link.shutdown()).await
+    })
+    .await
 }
 
 /// What a room is connected to: to every vehicle it is an executor of this name.

@@ -1,21 +1,13 @@
 //! The world as a program.
 
-use std::time::Duration;
-
 use agent_link::options::{LinkOptions, PlaceOptions};
-use agent_link::{Clock, Keys, Memory, RoleError, Wiring, drive, next_epoch, session};
+use agent_link::{Keys, Memory, RoleError, Wiring, drive, next_epoch};
 use clap::Args;
 
 use super::shown_world::ShownWorld;
+use super::time_keeping::{keeping_time, snapshots_every};
 use super::{ProgramError, WORLD, read};
 use crate::{MoverSpec, Place, World};
-
-/// Ten pictures a second look like motion …
-const LONGEST_PERIOD: Duration = Duration::from_millis(100);
-/// … but at high speed a robot is nowhere for long, and who waits to see it there must not miss it.
-const WORLD_S_BETWEEN_SNAPSHOTS: f64 = 1.0;
-/// More often is a load and no help.
-const SHORTEST_PERIOD: Duration = Duration::from_millis(10);
 
 /// What a world is started with.
 #[derive(Args, Clone, Debug)]
@@ -44,32 +36,15 @@ pub async fn run(args: WorldArgs) -> Result<(), ProgramError> {
 
 async fn drive_world(world: World, memory: Memory, args: &WorldArgs) -> Result<(), RoleError> {
     let keys = args.link.keys()?;
-    let noted = args.link.state_file("clock.json")?;
-    let clock = match &noted {
-        Some(file) => Clock::continued(file, args.speed)?,
-        None => Clock::start(args.speed)?,
-    };
-    let period = WORLD_S_BETWEEN_SNAPSHOTS / args.speed;
-    let period = Duration::try_from_secs_f64(period).unwrap_or(LONGEST_PERIOD);
     let wiring = Wiring {
-        snapshots_every: Some(period.clamp(SHORTEST_PERIOD, LONGEST_PERIOD)),
+        snapshots_every: Some(snapshots_every(args.speed)),
         ..wiring(&keys, next_epoch(&memory)?)
     };
-    let session = args.link.open().await?;
-    let service = clock.serve(&session, &keys).await;
-    let driven = match service {
-        Err(error) => Err(error.into()),
-        Ok(_service) => {
-            let world = ShownWorld::new(world, clock);
-            let driven = drive(world, memory, wiring, &session, clock, args.link.shutdown()).await;
-            driven.map(|_| ()).map_err(RoleError::from)
-        }
-    };
-    session::close(session).await;
-    if let Some(file) = &noted {
-        clock.stop(file)?;
-    }
-    driven
+    keeping_time(&args.link, &keys, args.speed, async |session, clock| {
+        let world = ShownWorld::new(world, clock);
+        drive(world, memory, wiring, session, clock, args.link.shutdown()).await
+    })
+    .await
 }
 
 /// What a world is connected to.
