@@ -75,11 +75,8 @@ pub struct StateService {
     asked: BTreeSet<Symbol>,
     table: BTreeMap<Fact, Known>,
     needs: BTreeSet<Fact>,
-    watched: BTreeSet<Fact>,
-    /// What the others watch, and when they said so.
-    watched_by: BTreeMap<Symbol, (Time, BTreeSet<Fact>)>,
     now: Time,
-    /// When needs and watches were said last.
+    /// When needs were said last.
     said: Option<Time>,
     /// When the table has changed last, and when it was told as a whole.
     changed: Time,
@@ -91,7 +88,7 @@ pub struct StateService {
 }
 
 impl StateService {
-    /// The service of the vehicle of that name. `beat`: how often what is needed and watched is said.
+    /// The service of the vehicle of that name. `beat`: how often what is needed is said.
     pub fn new(
         name: Symbol,
         beat: Time,
@@ -105,8 +102,6 @@ impl StateService {
             asked: asked.into_iter().collect(),
             table: BTreeMap::new(),
             needs: BTreeSet::new(),
-            watched: BTreeSet::new(),
-            watched_by: BTreeMap::new(),
             now: Time::ZERO,
             said: None,
             changed: Time::ZERO,
@@ -155,26 +150,21 @@ impl StateService {
     /// It is `now`. Does what is due.
     pub fn settle(&mut self, now: Time) {
         self.now = self.now.max(now);
-        if self.needs.is_empty() && self.watched.is_empty() {
+        if self.needs.is_empty() {
             self.said = None;
             return;
         }
         if self.said.is_none_or(|said| said + self.beat <= self.now) {
             self.said = Some(self.now);
-            if !self.needs.is_empty() {
-                let needs = self.needs.iter().take(FACTS_IN_A_MESSAGE).cloned();
-                let body = Body::Need(needs.collect());
-                self.say(body);
-            }
-            if !self.watched.is_empty() {
-                self.say_what_is_watched();
-            }
+            let needs = self.needs.iter().take(FACTS_IN_A_MESSAGE).cloned();
+            let body = Body::Need(needs.collect());
+            self.say(body);
         }
     }
 
     /// When [`settle`](Self::settle) is due.
     pub fn wake_at(&self) -> Option<Time> {
-        if self.needs.is_empty() && self.watched.is_empty() {
+        if self.needs.is_empty() {
             return None;
         }
         Some(self.said.map_or(Time::ZERO, |said| said + self.beat))
@@ -190,27 +180,19 @@ impl StateService {
                 FactChange::Remove(fact) => (fact, false),
                 FactChange::Set(..) => continue,
             };
-            let shared = self.is_shared(fact);
-            let mut watches = self.watched_by.values();
-            if !shared && !watches.any(|(_, facts)| facts.contains(fact)) {
+            if !self.is_shared(fact) {
                 continue;
             }
-            if shared {
-                self.note(
-                    fact,
-                    Known {
-                        holds,
-                        source: self.name.clone(),
-                        at: self.now,
-                    },
-                );
-            }
-            told.push(Told {
-                fact: fact.clone(),
-                holds,
-                source: self.name.clone(),
-                at: self.now,
-            });
+            // What is seen now is newer than anything that was said, also at the same moment.
+            let at = match self.table.get(fact) {
+                Some(known) if known.holds != holds && known.at >= self.now => {
+                    Time(known.at.0.saturating_add(1))
+                }
+                _ => self.now,
+            };
+            let source = self.name.clone();
+            self.note(fact, Known { holds, source, at });
+            told.extend(self.told(fact));
         }
         self.tell(told);
     }
@@ -227,19 +209,9 @@ impl StateService {
         self.needs = needs;
     }
 
-    /// What the running actions hang on, all of it.
-    pub fn watch(&mut self, facts: BTreeSet<Fact>) {
-        if facts == self.watched {
-            return;
-        }
-        self.watched = facts;
-        // Also that nothing is watched any more.
-        self.say_what_is_watched();
-    }
-
     /// Another vehicle has said something about facts.
     pub fn heard(&mut self, message: &Message) {
-        let Message { by, at, body } = message;
+        let Message { by, body, .. } = message;
         if *by == self.name {
             return;
         }
@@ -247,14 +219,8 @@ impl StateService {
             Body::Tasks(tasks) => self.compare(tasks.digest),
             Body::Told(told) => self.heard_told(told),
             Body::Need(facts) => self.heard_need(by, facts),
-            Body::Watch(facts) => self.heard_watch(by, *at, facts),
             Body::Bid(_) | Body::Goal(_) => {}
         }
-    }
-
-    /// A vehicle is gone.
-    pub fn lost(&mut self, name: &Symbol) {
-        self.watched_by.remove(name);
     }
 
     fn is_shared(&self, fact: &Fact) -> bool {
@@ -286,15 +252,10 @@ impl StateService {
             let known = Known {
                 holds: told.holds,
                 source: told.source.clone(),
-                // Nobody has seen anything in the future.
-                at: told.at.min(self.now),
+                // Nobody has seen anything in the future, as far as clocks agree.
+                at: told.at.min(self.now + self.beat),
             };
-            let news = if self.is_shared(&told.fact) {
-                self.note(&told.fact, known)
-            } else {
-                self.watched.contains(&told.fact)
-            };
-            if news {
+            if self.is_shared(&told.fact) && self.note(&told.fact, known) {
                 let fact = told.fact.clone();
                 let change = match told.holds {
                     true => FactChange::Add(fact),
@@ -320,19 +281,6 @@ impl StateService {
         if !unknown.is_empty() {
             let (by, facts) = (by.clone(), unknown);
             self.outputs.push_back(StateOutput::Asked { by, facts });
-        }
-    }
-
-    fn heard_watch(&mut self, by: &Symbol, at: Time, facts: &[Fact]) {
-        let before = self.watched_by.get(by);
-        if before.is_some_and(|(said, _)| *said > at) {
-            return;
-        }
-        let facts: BTreeSet<Fact> = facts.iter().take(MOST_FACTS).cloned().collect();
-        if facts.is_empty() {
-            self.watched_by.remove(by);
-        } else {
-            self.watched_by.insert(by.clone(), (at, facts));
         }
     }
 
@@ -363,12 +311,6 @@ impl StateService {
         for chunk in told.chunks(FACTS_IN_A_MESSAGE) {
             self.say(Body::Told(chunk.to_vec()));
         }
-    }
-
-    fn say_what_is_watched(&mut self) {
-        let facts = self.watched.iter().take(FACTS_IN_A_MESSAGE).cloned();
-        let body = Body::Watch(facts.collect());
-        self.say(body);
     }
 
     fn say(&mut self, body: Body) {

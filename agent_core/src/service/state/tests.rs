@@ -93,33 +93,58 @@ fn an_older_word_does_not_count_against_what_was_seen_since() {
 }
 
 #[test]
-fn what_is_ones_own_business_is_told_to_nobody_unless_somebody_watches_it() {
+fn of_two_words_at_one_moment_the_one_that_was_said_later_counts() {
+    let (mut a, mut b) = (service("a"), service("b"));
+    for holds in [true, false, true, false] {
+        let change = match holds {
+            true => FactChange::Add(spill("t3")),
+            false => FactChange::Remove(spill("t3")),
+        };
+        a.sensed(at(1.0), &[change]);
+        b.settle(at(1.0));
+        for message in said(&mut a) {
+            b.heard(&message);
+        }
+        assert_eq!(b.table()[&spill("t3")].holds, holds);
+        assert_eq!(a.digest(), b.digest());
+    }
+}
+
+#[test]
+fn what_is_seen_here_counts_more_than_what_was_said_by_a_clock_that_is_fast() {
+    let (mut a, mut b) = (service("a"), service("b"));
+    a.sensed(at(1.4), &[FactChange::Add(spill("t3"))]);
+    b.settle(at(1.0));
+    for message in said(&mut a) {
+        b.heard(&message);
+    }
+    b.sensed(at(1.2), &[FactChange::Remove(spill("t3"))]);
+    for message in said(&mut b) {
+        a.heard(&message);
+    }
+    assert!(!a.table()[&spill("t3")].holds && !b.table()[&spill("t3")].holds);
+    assert_eq!(a.digest(), b.digest());
+}
+
+#[test]
+fn what_is_ones_own_business_is_told_to_nobody_and_believed_of_nobody() {
     let (mut a, mut b) = (service("a"), service("b"));
     let own = Atom::new("hand-free", []);
     a.sensed(at(1.0), &[FactChange::Add(own.clone())]);
     assert_eq!(outputs(&mut a), []);
-    b.settle(at(1.0));
-    b.watch(BTreeSet::from([own.clone()]));
-    for message in said(&mut b) {
-        a.heard(&message);
-    }
-    a.sensed(at(2.0), &[FactChange::Remove(own.clone())]);
-    b.settle(at(2.0));
-    for message in said(&mut a) {
-        b.heard(&message);
-    }
-    let learnt = StateOutput::Learn {
-        by: "a".into(),
-        changes: vec![FactChange::Remove(own.clone())],
+    let told = Told {
+        fact: own,
+        holds: true,
+        source: "a".into(),
+        at: at(1.0),
     };
-    assert!(outputs(&mut b).contains(&learnt));
-    // When it is watched no more, it is told no more.
-    b.watch(BTreeSet::new());
-    for message in said(&mut b) {
-        a.heard(&message);
-    }
-    a.sensed(at(3.0), &[FactChange::Add(own)]);
-    assert_eq!(outputs(&mut a), []);
+    b.heard(&Message {
+        by: "a".into(),
+        at: at(1.0),
+        body: Body::Told(vec![told]),
+    });
+    assert_eq!(outputs(&mut b), []);
+    assert!(b.table().is_empty());
 }
 
 #[test]
