@@ -168,6 +168,51 @@ fn a_goal_for_the_team_is_done_by_one_who_can_and_what_is_unknown_is_found_out_f
     assert!(looked, "{}", told(&events));
 }
 
+/// The carrier cannot see: what it knows of the tables it has from the others.
+fn with_a_blind_carrier() -> Restaurant {
+    let paper = Restaurant::of_the_paper();
+    let mut room = paper.room().clone();
+    let carrier = room.vehicles.get_mut("k3").expect("it is there");
+    carrier.parts.retain(|part| part != "eyes");
+    let waiter = room.vehicles.get_mut("k2").expect("it is there");
+    waiter.start = "table1".into();
+    paper.with_room(room).expect("a carrier needs no eyes")
+}
+
+#[test]
+fn what_one_vehicle_sees_break_stops_another_that_cannot_see_it() {
+    let mut team = team(&with_a_blind_carrier());
+    team.run_until(at(3.0));
+    team.change(vec![add("seated", &["ann", "table1"])]);
+    ask(&mut team, "order-1", Atom::new("serve", ["cola", "ann"]));
+    let mut events = Vec::new();
+    run_until(&mut team, &mut events, at(600.0), |(who, event)| {
+        who == "k3"
+            && matches!(&event.what, Happening::ActionStarted { action, .. } if action.name == "move" && action.args[1] == "table1")
+    });
+    let later = team.now() + at(5.0);
+    team.run_until(later);
+    let blocked = team.now();
+    team.change(vec![add("blocked", &["table1"])]);
+    let stopped = run_until(&mut team, &mut events, at(600.0), |(who, event)| {
+        who == "k3"
+            && matches!(&event.what, Happening::GoalBlocked { blocked_by } if blocked_by.contains(&fact("blocked", &["table1"])))
+    });
+    assert!(stopped.since(blocked) < at(1.0), "{}", told(&events));
+    let seen_by = |who: &str, change: &FactChange| {
+        events.iter().any(|(to, event)| {
+            to == "k3" && matches!(&event.what, Happening::FactsTold { by, changes } if by == who && changes.contains(change))
+        })
+    };
+    assert!(seen_by("k2", &add("blocked", &["table1"])));
+    // What it was told it is told again: the table is free, and she gets her drink.
+    team.change(vec![FactChange::Remove(fact("blocked", &["table1"]))]);
+    run_until(&mut team, &mut events, at(900.0), |(_, event)| {
+        event.goal == Some("order-1".into()) && event.what == Happening::GoalSucceeded
+    });
+    assert_eq!(served(&team), [("k3".into(), "ann".into())]);
+}
+
 #[test]
 fn when_the_one_who_carries_dies_its_task_goes_to_another_and_the_drink_it_held_is_told() {
     let restaurant = restaurant();

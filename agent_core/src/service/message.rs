@@ -33,8 +33,6 @@ pub enum Body {
     Told(Vec<Told>),
     /// The sender wants to know whether these hold.
     Need(Vec<Fact>),
-    /// What the sender's running actions hang on, all of it: whoever sees one of these change says so.
-    Watch(Vec<Fact>),
     /// A user's goal for whoever can do it best. No vehicle says this to others: it is how a goal that
     /// is for nobody in particular comes to the one that publishes it.
     Goal(GoalRequest),

@@ -5,8 +5,8 @@
 //!
 //! - [`TaskService`]: a task is published by whoever needs it done, and by nobody else decided on.
 //!   Vehicles say at what cost they could do it, one of them gets it.
-//! - [`StateService`]: facts are told with their source and their age, what is not known is asked
-//!   for, and what an action protects is watched by everybody.
+//! - [`StateService`]: facts are told with their source and their age, so what an action protects is
+//!   monitored by the eyes of all, and what is not known is asked for.
 //!
 //! Both are values without clock, randomness or network. They speak [`Message`]s, of which any may
 //! be lost, late or repeated: each of them says the whole of something, so that the next one makes

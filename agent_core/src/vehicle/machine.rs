@@ -82,8 +82,6 @@ impl<A: Mind, P: Planner> Machine for Vehicle<A, P> {
         self.assessments.keep_only(|id| tasks.is_offered(id));
         self.assess();
         self.withdraw_what_is_over();
-        let watched = self.watched();
-        self.states.watch(watched);
         let needs = self.needs();
         self.states.need(needs);
         self.come_to_rest();

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::convert::Infallible;
 
 use crate::agent::{Agent, Intention, WaitsFor};
-use crate::model::{Action, Belief, Fact};
+use crate::model::{Belief, Fact};
 use crate::parallel::ParallelAgent;
 use crate::planner::Planner;
 use crate::protocol::{Durable, GoalId};
@@ -16,9 +16,6 @@ pub trait Mind: Durable<In = Infallible, Out = Infallible> {
 
     /// All its goals that are not over, with the plans for them.
     fn intentions(&self) -> Vec<&Intention>;
-
-    /// The actions that are being executed.
-    fn executing(&self) -> Vec<&Action>;
 
     /// The facts that its goals wait for.
     fn wanted(&self) -> BTreeSet<Fact>;
@@ -41,13 +38,6 @@ impl<P: Planner> Mind for Agent<P> {
         all.chain(self.waiting().intentions()).collect()
     }
 
-    fn executing(&self) -> Vec<&Action> {
-        Agent::executing(self)
-            .map(|(_, action, _)| action)
-            .into_iter()
-            .collect()
-    }
-
     fn wanted(&self) -> BTreeSet<Fact> {
         let aside = self.aside().goals().iter();
         let facts = aside.filter_map(|(_, waits_for)| match waits_for {
@@ -65,11 +55,6 @@ impl<P: Planner + Clone> Mind for ParallelAgent<P> {
 
     fn intentions(&self) -> Vec<&Intention> {
         ParallelAgent::intentions(self).collect()
-    }
-
-    fn executing(&self) -> Vec<&Action> {
-        let executing = self.agents().filter_map(Agent::executing);
-        executing.map(|(_, action, _)| action).collect()
     }
 
     fn wanted(&self) -> BTreeSet<Fact> {

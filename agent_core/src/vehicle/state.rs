@@ -1,10 +1,8 @@
 //! What the state service wants done, and what it is told.
 
-use std::collections::BTreeSet;
-
 use super::{Mind, Vehicle};
-use crate::model::{Clause, Fact, FactChange, Symbol, Task};
-use crate::planner::{Planner, instance};
+use crate::model::{FactChange, Symbol, Task};
+use crate::planner::Planner;
 use crate::protocol::{Happening, Input, Output};
 use crate::service::StateOutput;
 
@@ -51,28 +49,8 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
         }
     }
 
-    /// What the running actions hang on, as far as others can see it: a fact about a vehicle's own body names
-    /// no vehicle, and the others would answer it with where they are themselves.
-    pub(super) fn watched(&self) -> BTreeSet<Fact> {
-        let mut facts = BTreeSet::new();
-        for action in self.mind.executing() {
-            let Some(model) = self.model.actions.get(&action.name) else {
-                continue;
-            };
-            for clause in model.protected.iter().chain(&model.goal_states) {
-                if let Clause::Fact(_, pattern) = clause
-                    && self.model.shared.contains(&pattern.name)
-                {
-                    facts.extend(instance(pattern, action));
-                }
-            }
-        }
-        facts
-    }
-
     /// A vehicle is gone. Of those that are left the first by name says what it had with it.
     pub(super) fn vehicle_lost(&mut self, name: &Symbol) {
-        self.states.lost(name);
         let earlier = |other: &Symbol| other < &self.name && other != name;
         if self.tasks.vehicles().any(earlier) {
             return;

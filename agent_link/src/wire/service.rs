@@ -36,7 +36,6 @@ enum Body {
     },
     Told(Vec<Told>),
     Need(Vec<Text<Fact>>),
-    Watch(Vec<Text<Fact>>),
 }
 
 #[derive(Serialize, Deserialize)]
@@ -86,7 +85,6 @@ pub fn service_to_wire(message: &service::Message) -> Result<Value, WireError> {
         },
         service::Body::Told(told) => Body::Told(told.iter().map(told_to_wire).collect()),
         service::Body::Need(facts) => Body::Need(to_text(facts)),
-        service::Body::Watch(facts) => Body::Watch(to_text(facts)),
         service::Body::Goal(_) => {
             let why = "a user's goal is not said to all";
             return Err(WireError::malformed("own message", why));
@@ -125,7 +123,6 @@ pub fn service_from_wire(value: Value) -> Result<service::Message, WireError> {
         }),
         Body::Told(told) => service::Body::Told(told.into_iter().map(told_from_wire).collect()),
         Body::Need(facts) => service::Body::Need(from_text(facts)),
-        Body::Watch(facts) => service::Body::Watch(from_text(facts)),
     };
     Ok(service::Message {
         by: message.by.into(),
@@ -247,8 +244,7 @@ mod tests {
                 source: "k1".into(),
                 at: Time(99),
             }]),
-            service::Body::Need(vec![fact.clone()]),
-            service::Body::Watch(vec![fact]),
+            service::Body::Need(vec![fact]),
         ];
         for body in bodies {
             let message = service::Message {

@@ -396,7 +396,7 @@ impl TaskService {
                 self.heard_tasks(by, *at, tasks);
             }
             Body::Bid(bid) => self.heard_bid(by, *at, bid),
-            Body::Told(_) | Body::Need(_) | Body::Watch(_) | Body::Goal(_) => {}
+            Body::Told(_) | Body::Need(_) | Body::Goal(_) => {}
         }
     }
 
