@@ -5,6 +5,7 @@ mod back_off;
 mod role_process;
 mod state_dir;
 mod supervisor;
+mod temporary;
 mod watched;
 
 use std::collections::{BTreeMap, VecDeque};

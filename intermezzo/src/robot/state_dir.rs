@@ -5,8 +5,7 @@ use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use tempfile::TempDir;
-
+use super::temporary::Temporary;
 use crate::exit::Failure;
 
 /// Locked by the `up` that uses the directory.
@@ -32,12 +31,13 @@ pub(super) struct StateDir {
     /// Locked.
     _up: File,
     /// Removed at the end, after the locks are gone.
-    _temporary: Option<TempDir>,
+    _temporary: Option<Temporary>,
 }
 
 impl StateDir {
-    /// Takes the directory of `robot` in `wanted`, or in a temporary one that is gone at the end. Waits
-    /// until the roles of an `up` that was killed have ended.
+    /// Takes the directory of `robot` in `wanted`, or in a temporary one that is gone at the end (or, if
+    /// this process is killed, when the next one is made). Waits until the roles of an `up` that was
+    /// killed have ended.
     ///
     /// # Errors
     /// If another `up` uses it, or processes that do will not end.
@@ -45,13 +45,14 @@ impl StateDir {
         let (path, temporary) = match wanted {
             Some(path) => (path.to_owned(), None),
             None => {
-                let temporary = tempfile::Builder::new()
-                    .prefix("intermezzo-")
-                    .tempdir()
-                    .map_err(|error| {
-                        Failure::failed(format_args!("cannot make a temporary directory: {error}"))
-                            .advice("name a directory with --state")
-                    })?;
+                let temporary = Temporary::new().and_then(|temporary| {
+                    share_with_children(temporary.mark())?;
+                    Ok(temporary)
+                });
+                let temporary = temporary.map_err(|error| {
+                    Failure::failed(format_args!("cannot make a temporary directory: {error}"))
+                        .advice("name a directory with --state")
+                })?;
                 (temporary.path().to_owned(), Some(temporary))
             }
         };

@@ -21,7 +21,8 @@ pub const PATIENCE: Duration = Duration::from_secs(90);
 /// lest each of them is late for what the others wait for.
 static USERS: Semaphore = Semaphore::const_new(2);
 
-/// A user with a runtime directory of their own: robots of other tests are not seen.
+/// A user with a directory of their own, for what runs and for what is temporary: robots of other tests are
+/// not seen.
 pub struct User {
     runtime: TempDir,
     _turn: SemaphorePermit<'static>,
@@ -53,6 +54,8 @@ impl User {
         command
             .args(args)
             .env("XDG_RUNTIME_DIR", self.runtime.path())
+            // What a killed one leaves behind goes with the user.
+            .env("TMPDIR", self.runtime.path())
             .env_remove("RUST_LOG")
             .env_remove("INTERMEZZO_ROBOT")
             .stdin(Stdio::null())
