@@ -340,6 +340,17 @@ mod tests {
     }
 
     #[test]
+    fn no_vehicle_is_called_as_something_else_on_the_wire_is() {
+        for name in ["room", "team", "goal"] {
+            let findings = refused(&format!(
+                "[vehicle.{name}]\nstart = \"kitchen\"\nparts = []\n"
+            ));
+            let words = format!("vehicle.{name}: `{name}` means something else");
+            assert!(findings.contains(&words), "{findings}");
+        }
+    }
+
+    #[test]
     fn what_cannot_be_read_is_said_with_its_line_too() {
         let findings = refused("[vehicle.k3]\nstrat = \"kitchen\"\n");
         assert!(

@@ -7,6 +7,22 @@ use agent_core::model::{Pattern, Symbol};
 
 use crate::{Level, Site};
 
+/// Names that are parts of keys already, or of those who are no vehicles.
+const TAKEN: [&str; 13] = [
+    "alive",
+    "clock",
+    "event",
+    "facts",
+    "goal",
+    "instruction",
+    "intermezzo",
+    "report",
+    "room",
+    "supervisor",
+    "team",
+    "user",
+    "world",
+];
 /// What a vehicle can be made of (`docs/executor.md`).
 pub const PARTS: [&str; 5] = ["arm", "base", "eyes", "tray", "voice"];
 
@@ -161,6 +177,12 @@ impl Faults<'_> {
             self.add(
                 format!("vehicle.{name}"),
                 "a vehicle's name has letters, digits, `-` and `_` only",
+            );
+        }
+        if TAKEN.contains(&name.as_str()) {
+            self.add(
+                format!("vehicle.{name}"),
+                format!("`{name}` means something else on the wire; choose another name"),
             );
         }
         self.place(key("start"), &vehicle.start);
