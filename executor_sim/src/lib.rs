@@ -30,7 +30,7 @@ pub use place::Place;
 pub use profile::MoverSpec;
 pub use room::{
     Bottle, Deed, Doing as RoomDoing, Guest, Mover, Pace, ROOM, Room, RoomError, Spot, Tempo,
-    Things, Whereabouts,
+    Things, Whereabouts, users_speak_about,
 };
 pub use setup::SetupError;
 pub use signal::{MotorCommand, Pose, Sensor, Ticket};

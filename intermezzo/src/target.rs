@@ -138,6 +138,22 @@ pub(crate) fn unanswered(error: ClientError) -> Failure {
     }
 }
 
+/// The same, of a question to one in particular: perhaps there is nobody of that name.
+pub(crate) async fn unanswered_by(client: &Client, whom: &str, error: ClientError) -> Failure {
+    let alive = match (&error, client.alive().await) {
+        (ClientError::NoAnswer { .. }, Ok(alive)) => alive,
+        _ => return unanswered(error),
+    };
+    let mut names: Vec<&str> = alive.iter().map(|(name, _)| name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    if names.is_empty() || names.contains(&whom) {
+        return unanswered(error);
+    }
+    let what = format!("there is no `{whom}` here: there are {}", names.join(", "));
+    Failure::nobody_there(what)
+}
+
 /// Nobody of a robot is seen.
 pub(crate) fn nobody(keys: &Keys) -> Failure {
     Failure::nobody_there(format_args!(

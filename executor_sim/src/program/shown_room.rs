@@ -203,7 +203,8 @@ impl Inspect for ShownRoom {
 
     fn belief(&self) -> Value {
         let (bottles, guests) = self.things();
-        json!({ "bottles": bottles, "guests": guests })
+        let names: BTreeMap<_, _> = self.room.names().into_iter().collect();
+        json!({ "bottles": bottles, "guests": guests, "names": names })
     }
 
     fn stack(&self) -> Value {

@@ -34,6 +34,7 @@ pub use chronicle::{Deed, Doing};
 pub use mover::Mover;
 pub use tempo::{Pace, Tempo};
 pub use things::{Bottle, Guest, Spot, Things, Whereabouts};
+pub use users::about as users_speak_about;
 
 /// What a room is called as an executor.
 pub const ROOM: &str = "room";
@@ -224,6 +225,17 @@ impl Room {
     /// The body of that vehicle.
     pub fn mover(&self, vehicle: &str) -> Option<&Mover> {
         self.movers.get(&Symbol::from(vehicle))
+    }
+
+    /// All that users may speak of, by what it is.
+    pub fn names(&self) -> [(&'static str, Vec<&Symbol>); 5] {
+        [
+            ("bottle", self.things.bottles.keys().collect()),
+            ("guest", self.things.guests.keys().collect()),
+            ("kind", self.names.kinds.iter().collect()),
+            ("node", self.things.places.iter().collect()),
+            ("vehicle", self.names.vehicles.iter().collect()),
+        ]
     }
 
     /// The latest things that were done, oldest first.

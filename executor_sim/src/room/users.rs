@@ -87,6 +87,27 @@ pub(super) fn follow(things: &mut Things, change: &FactChange) {
     }
 }
 
+/// What the things in a fact are, of which [`follow`] takes notice. `None` if it takes none, whatever they are:
+/// what vehicles do nobody else can do for them.
+pub fn about(change: &FactChange) -> Option<&'static [&'static str]> {
+    let (fact, so) = match change {
+        FactChange::Add(fact) => (fact, true),
+        FactChange::Remove(fact) => (fact, false),
+        FactChange::Set(..) => return None,
+    };
+    Some(match (fact.name.as_str(), so) {
+        ("stands" | "edge", _) => &["bottle", "node"],
+        ("holding", false) | ("used", _) => &["bottle"],
+        ("loaded", false) => &["bottle", "slot"],
+        ("with", false) => &["bottle", "vehicle"],
+        ("spill" | "blocked", _) => &["node"],
+        ("arrived" | "gone", true) => &["guest"],
+        ("seated", _) => &["guest", "node"],
+        ("wants", true) => &["guest", "kind"],
+        _ => return None,
+    })
+}
+
 fn stand(things: &mut Things, fact: &Fact, bottle: &Symbol, place: &Symbol, so: bool) {
     let node = place.clone();
     let there = if fact.name == "stands" {

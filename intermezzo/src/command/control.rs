@@ -3,16 +3,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use agent_core::language::{nearest, parse_fact_change};
-use agent_core::model::FactChange;
+use agent_core::model::{Atom, FactChange};
 use agent_core::protocol::Command;
 use agent_link::View;
-use executor_sim::program::WORLD;
+use executor_sim::program::{ROOM, WORLD};
 use serde_json::{Value, json};
 
 use crate::cli::{CommandArgs, DoorArgs, DoorState, FactArgs};
 use crate::exit::{Exit, Failure};
 use crate::style::{BAD, GOOD};
-use crate::target::{Connection, nobody, unanswered};
+use crate::target::{Connection, nobody, unanswered, unanswered_by};
 
 /// Suspends, resumes or cancels a goal.
 pub(crate) async fn command(
@@ -27,7 +27,11 @@ pub(crate) async fn command(
         None => client.command(&command).await,
         Some(vehicle) => client.command_to(vehicle, &command).await,
     };
-    let verdict = connection.close(verdict.map_err(unanswered)).await?;
+    let verdict = match (verdict, &args.vehicle) {
+        (Err(error), Some(vehicle)) => Err(unanswered_by(client, vehicle, error).await),
+        (verdict, _) => verdict.map_err(unanswered),
+    };
+    let verdict = connection.close(verdict).await?;
     let words = format!("{} {done}", args.goal);
     Ok(tell(
         json!(verdict),
@@ -70,11 +74,15 @@ async fn somebody_understands(connection: &Connection, fact: &FactChange) -> Res
     if alive.is_empty() {
         return Err(nobody(&connection.keys));
     }
+    let mut room = None;
     for (agent, _) in alive {
         let belief = client
             .look(&agent, View::Belief)
             .await
             .map_err(unanswered)?;
+        if agent == ROOM {
+            room = Some(belief["names"].clone());
+        }
         for (word, arguments) in belief["words"].as_object().into_iter().flatten() {
             let known = words.entry(word.clone()).or_default();
             known.extend(arguments.as_u64());
@@ -90,7 +98,7 @@ async fn somebody_understands(connection: &Connection, fact: &FactChange) -> Res
         });
     };
     if arguments.contains(&(atom.args.len() as u64)) {
-        return Ok(());
+        return room.map_or(Ok(()), |names| the_room_takes_it(fact, atom, &names));
     }
     let wanted: Vec<String> = arguments.iter().map(u64::to_string).collect();
     Err(Failure::bad_input(format_args!(
@@ -99,6 +107,35 @@ async fn somebody_understands(connection: &Connection, fact: &FactChange) -> Res
         wanted.join(" or "),
         atom.args.len()
     )))
+}
+
+/// Refuses a fact that a room takes no notice of. `names` are what there is in it.
+fn the_room_takes_it(fact: &FactChange, atom: &Atom, names: &Value) -> Result<(), Failure> {
+    let Some(about) = executor_sim::users_speak_about(fact) else {
+        let what = format!("`{fact}` is not for users to say: vehicles find that out, or do it");
+        return Err(Failure::bad_input(what).advice(
+            "users may say: arrived, seated, gone, wants, spill, blocked, stands, used; and of a bottle what is not so any more",
+        ));
+    };
+    for (arg, what) in atom.args.iter().zip(about) {
+        // What is not listed is not checked.
+        let Some(known) = names[*what].as_array() else {
+            continue;
+        };
+        let known: Vec<&str> = known.iter().filter_map(Value::as_str).collect();
+        if !known.contains(&arg.as_str()) {
+            let what = match *what {
+                "node" => "place",
+                what => what,
+            };
+            let failure = Failure::bad_input(format_args!("there is no {what} `{arg}`"));
+            return Err(match nearest(arg.as_str(), known.iter().copied()) {
+                Some(near) => failure.advice(format_args!("did you mean `{near}`?")),
+                None => failure.advice(format_args!("one of {}", known.join(", "))),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Opens or closes a door.
@@ -110,7 +147,15 @@ pub(crate) async fn door(args: DoorArgs) -> Result<Exit, Failure> {
 
 async fn set_door(connection: &Connection, args: &DoorArgs) -> Result<Exit, Failure> {
     let client = &connection.client;
-    let belief = client.look(WORLD, View::Belief).await.map_err(unanswered)?;
+    let belief = match client.look(WORLD, View::Belief).await {
+        Ok(belief) => belief,
+        Err(error) => {
+            let failure = unanswered_by(client, WORLD, error).await;
+            return Err(
+                failure.advice("doors are the business of a robot's world; a restaurant has none")
+            );
+        }
+    };
     let doors = belief["doors"].as_object().cloned().unwrap_or_default();
     if !doors.contains_key(&args.door) {
         let names = doors.keys().map(String::as_str);

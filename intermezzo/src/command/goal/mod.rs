@@ -11,7 +11,7 @@ use serde_json::json;
 use crate::cli::GoalArgs;
 use crate::exit::{Exit, Failure};
 use crate::style::{BAD, GOOD};
-use crate::target::{Connection, unanswered};
+use crate::target::{Connection, unanswered, unanswered_by};
 
 pub(crate) async fn run(args: GoalArgs) -> Result<Exit, Failure> {
     let goal = read(&args)?;
@@ -22,7 +22,10 @@ pub(crate) async fn run(args: GoalArgs) -> Result<Exit, Failure> {
             None => client.goal(goal).await,
             Some(vehicle) => client.goal_to(vehicle, goal).await,
         };
-        let verdict = verdict.map_err(unanswered);
+        let verdict = match (verdict, &args.vehicle) {
+            (Err(error), Some(vehicle)) => Err(unanswered_by(client, vehicle, error).await),
+            (verdict, _) => verdict.map_err(unanswered),
+        };
         let verdict = connection.close(verdict).await?;
         return Ok(tell(&verdict, &args));
     }

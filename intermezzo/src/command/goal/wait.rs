@@ -16,7 +16,7 @@ use super::tell;
 use crate::cli::GoalArgs;
 use crate::exit::{Exit, Failure};
 use crate::style::{AGAIN, ASIDE, BAD, DIM, GOOD};
-use crate::target::{Connection, unanswered};
+use crate::target::{Connection, unanswered, unanswered_by};
 
 /// A robot that is down may come back at another address: between two looks.
 const RETRY: Duration = Duration::from_millis(200);
@@ -37,7 +37,11 @@ pub(super) async fn run(
         Some(vehicle) => client.goal_to(vehicle, goal).await,
         None => client.goal(goal).await,
     };
-    let ended = match asked.map_err(unanswered) {
+    let asked = match (asked, &args.vehicle) {
+        (Err(error), Some(vehicle)) => Err(unanswered_by(client, vehicle, error).await),
+        (asked, _) => asked.map_err(unanswered),
+    };
+    let ended = match asked {
         Err(failure) => Err(failure),
         Ok(verdict) => match (tell(&verdict, args), &verdict.id) {
             (Exit::Done, Some(id)) => {
