@@ -16,6 +16,9 @@ use std::time::Duration;
 use agent_link::options::{DEFAULT_ROBOT, LimitOptions, PlannerOptions};
 use clap::{Args, Parser, Subcommand};
 
+/// Where a robot begins unless it is said.
+pub(crate) const USUAL_START: &str = "n1";
+
 /// Robots that can be interrupted: they stop in the middle of an action, do what is more urgent,
 /// and take up the interrupted work where that still makes sense.
 #[derive(Debug, Parser)]
@@ -27,6 +30,7 @@ use clap::{Args, Parser, Subcommand};
     after_help = "\
 Begin with:
   intermezzo demo                            a tour with two emergencies, in half a minute
+  intermezzo demo restaurant                 two guests, three vehicles and a spill, in a minute
   intermezzo up                              a robot in the museum, until Ctrl-C; then, elsewhere:
   intermezzo goal '(guide n40)'              give it something to do
   intermezzo goal '(go n28)' --emergency     and something more urgent
@@ -50,7 +54,7 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// A guided tour with two emergencies and a door that closes, played by four processes.
+    /// A story, played by real processes: a guided tour with two emergencies, or an evening in a restaurant.
     Demo(DemoArgs),
     /// Start a robot and show what it does, until Ctrl-C.
     Up(Box<UpArgs>),
@@ -131,13 +135,14 @@ The story: a robot guides a visitor from the entrance (n1) to the main hall (n40
 a corridor somebody needs the toilet, and on the way there a child feels ill. While the tour waits, a
 door on its way closes. The robot comes back to the tour with another plan, and arrives.
 
-In the restaurant one vehicle sees who comes in, one takes orders, and one serves. Two guests are served in one round; while the
-second drink is being grasped, somebody knocks over a vase.
+In the restaurant one vehicle sees who comes in, one takes orders, and one serves. Two guests at two tables
+order, and are served in one round. While the first drink is being taken from the tray, somebody knocks over
+a vase: that is wiped up first.
 
 They are the scenario files demo.toml and restaurant.toml in intermezzo/scenarios, which `intermezzo up --scenario` reads too.
 
 Examples:
-  intermezzo demo restaurant    three vehicles, side by side
+  intermezzo demo restaurant    three vehicles, side by side: a minute
   intermezzo demo --speed 5     slower, to watch the robot stop and turn
   intermezzo demo --json        one event a line, for programs")]
 pub(crate) struct DemoArgs {
@@ -180,14 +185,14 @@ A scenario is TOML, one event after the other:
 Exit status: 0 after Ctrl-C; with --until-done, 0 if all goals of the scenario succeeded, else 1;
 1 if a role ends whenever it is started; 2 if the place or the scenario is not in order.")]
 pub(crate) struct UpArgs {
-    /// A folder with map, domains and execution models, or `museum`, which is built in.
+    /// A folder with map, domains and execution models, or `museum` or `restaurant`, which are built in.
     #[arg(value_name = "PLACE", default_value = "museum")]
     pub(crate) place: PathBuf,
     /// The robot's name. Two robots of different names can run side by side.
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT, env = "INTERMEZZO_ROBOT")]
     pub(crate) robot: String,
-    /// The node where the robot stands at first.
-    #[arg(long, value_name = "NODE", default_value = "n1")]
+    /// The node where the robot stands at first. In a restaurant room.toml says that of each vehicle.
+    #[arg(long, value_name = "NODE", default_value = USUAL_START)]
     pub(crate) start: String,
     /// How many seconds of the world pass in one.
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]

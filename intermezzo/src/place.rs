@@ -21,11 +21,17 @@ pub(crate) fn read(typed: &Path) -> Result<(Option<PathBuf>, Place), Failure> {
     if typed == Path::new(MUSEUM) && !typed.is_dir() {
         return Ok((None, Place::museum()));
     }
+    if !typed.exists() {
+        let what = format!("there is no folder {}", typed.display());
+        return Err(Failure::bad_input(what).advice(
+            "name a folder such as maps/museum, or what is built in: `museum` or `restaurant`",
+        ));
+    }
     let place = Place::read(typed).map_err(|findings| {
         let advice = if typed.is_dir() {
-            "see maps/README.md for what belongs in a place"
+            "see maps/README.md for what belongs in a place; a folder with a room.toml is a restaurant"
         } else {
-            "name a folder such as maps/museum, or `museum`, which is built in"
+            "name a folder such as maps/museum, or what is built in: `museum` or `restaurant`"
         };
         Failure::bad_input(format_args!(
             "the place {} is not in order:\n{}",

@@ -21,7 +21,7 @@ pub(crate) async fn run(args: DemoArgs) -> Result<Exit, Failure> {
         // Demonstrations can run side by side, and beside a robot that is in use.
         robot: format!("demo-{}", std::process::id()),
         place: None,
-        start: "n1".to_owned(),
+        start: crate::cli::USUAL_START.to_owned(),
         speed: args.speed,
         planner: args.planner,
         faults: None,

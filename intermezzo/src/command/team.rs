@@ -12,7 +12,7 @@ use crate::cli::UpArgs;
 use crate::exit::{Exit, Failure};
 use crate::robot::{Robot, Setup};
 use crate::scenario::Player;
-use crate::show::{ForTeam, JsonLines, Programme, show};
+use crate::show::{Ending, ForTeam, JsonLines, Programme, show};
 use crate::style::{BOLD, DIM};
 
 pub(super) async fn run(
@@ -26,6 +26,10 @@ pub(super) async fn run(
     };
     if args.no_world {
         let what = "--no-world: the room of a restaurant cannot be elsewhere";
+        return Err(Failure::bad_input(what));
+    }
+    if args.start != crate::cli::USUAL_START {
+        let what = "--start: in a restaurant room.toml says where each vehicle stands at first";
         return Err(Failure::bad_input(what));
     }
     let setup = Setup {
@@ -76,18 +80,20 @@ pub(super) async fn perform(
         };
         let mut screen = ForTeam::new(zero, vehicles);
         let ending = show(&mut robot, programme, &mut interrupted, &mut screen).await;
-        for (vehicle, table) in screen.summaries() {
-            anstream::println!("\n{BOLD}{vehicle}{BOLD:#}\n{table}");
+        for retold in screen.retold() {
+            anstream::println!("\n{retold}");
         }
         ending
     };
     let now = robot.clock.now();
     robot.end().await;
-    let (exit, failed) = judge(ending?);
+    let ending = ending?;
+    let to_the_end = performance.until_done && ending != Ending::Interrupted;
+    let (exit, failed) = judge(ending);
     if performance.json {
         JsonLines.end(now, exit == Exit::Done, &failed);
     } else {
-        conclude(exit, performance.until_done, &failed);
+        conclude(exit, to_the_end, &failed);
     }
     Ok(exit)
 }

@@ -112,19 +112,21 @@ pub(super) async fn perform(
         anstream::println!("\n{table}");
     }
     robot.end().await;
-    let (exit, failed) = judge(ending?);
+    let ending = ending?;
+    let to_the_end = performance.until_done && ending != Ending::Interrupted;
+    let (exit, failed) = judge(ending);
     if performance.json {
         JsonLines.end(now, exit == Exit::Done, &failed);
     } else {
-        conclude(exit, performance.until_done, &failed);
+        conclude(exit, to_the_end, &failed);
     }
     Ok(exit)
 }
 
-/// The last words to people.
-pub(super) fn conclude(exit: Exit, until_done: bool, failed: &[String]) {
+/// The last words to people. `to_the_end`: a story has been played, and not been broken off.
+pub(super) fn conclude(exit: Exit, to_the_end: bool, failed: &[String]) {
     if exit == Exit::Done {
-        if until_done {
+        if to_the_end {
             anstream::println!("{GOOD}Every goal was reached.{GOOD:#}");
         }
         return;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use agent_core::model::{FactChange, Symbol, Time};
+use agent_core::model::{Fact, FactChange, Symbol, Time};
 use agent_core::protocol::{Event, GoalId, Happening};
 use agent_link::{Client, Clock};
 use tokio::sync::mpsc;
@@ -19,6 +19,9 @@ const SETTING_OFF: Time = Time(4_500_000);
 
 /// So long after an action has begun it is in full swing.
 const IN_FULL_SWING: Time = Time(3_000_000);
+
+/// So long after somebody has learnt something, all have, and the action that has brought it about has ended.
+const ALL_KNOW: Time = Time(500_000);
 
 /// What a story has come to.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,8 +43,12 @@ pub(crate) struct Player {
     /// When the next event is due, if what it waits for has come: a robot that was sent along an arc is
     /// well on it by then.
     due_at: Option<Time>,
+    /// What somebody has learnt so far, and nobody that it is no longer so.
+    learnt: BTreeSet<Fact>,
     /// The goals that have not ended.
     open: BTreeSet<GoalId>,
+    /// Goals of any vehicle that were accepted and have not ended, whoever gave them.
+    at_work: BTreeSet<(Symbol, GoalId)>,
     /// Whoever takes goals, where that is not a parent.
     vehicles: BTreeSet<Symbol>,
     failed: Vec<String>,
@@ -74,6 +81,8 @@ impl Player {
             events,
             ready,
             due_at: None,
+            learnt: BTreeSet::new(),
+            at_work: BTreeSet::new(),
             open,
             vehicles,
             failed: Vec::new(),
@@ -121,8 +130,12 @@ impl Player {
     }
 
     fn go_on(&mut self) -> Option<Told> {
-        self.due_at = None;
         let event = std::mem::replace(&mut self.next, self.events.next())?;
+        self.due_at = match self.next.as_ref().map(|next| &next.when) {
+            // It was learnt before anything waited for it.
+            Some(When::Once(fact)) if self.learnt.contains(fact) => Some(Time::ZERO),
+            _ => None,
+        };
         // The task lives as long as this.
         let _ = self.deeds.send(event.clone());
         Some(Told::Said(event))
@@ -140,6 +153,9 @@ impl Player {
 
     /// An agent has told something.
     pub(crate) fn heard(&mut self, agent: &Symbol, event: &Event) {
+        if let Happening::BeliefChanged { changes } = &event.what {
+            self.learn(changes);
+        }
         if let Some(due_at) = self
             .next
             .as_ref()
@@ -150,6 +166,18 @@ impl Player {
         let Some(goal) = event.goal.as_ref().filter(|_| self.takes_goals(agent)) else {
             return;
         };
+        let key = (agent.clone(), goal.clone());
+        match &event.what {
+            Happening::GoalAccepted { .. } => {
+                self.at_work.insert(key);
+            }
+            Happening::GoalSucceeded
+            | Happening::GoalFailed { .. }
+            | Happening::GoalUnknown { .. } => {
+                self.at_work.remove(&key);
+            }
+            _ => {}
+        }
         match &event.what {
             Happening::GoalSucceeded => {
                 self.open.remove(goal);
@@ -160,6 +188,20 @@ impl Player {
                 self.failed.push(format!("goal {goal} failed: {reason}"));
             }
             _ => {}
+        }
+    }
+
+    fn learn(&mut self, changes: &[FactChange]) {
+        for change in changes {
+            match change {
+                FactChange::Add(fact) => {
+                    self.learnt.insert(fact.clone());
+                }
+                FactChange::Remove(fact) => {
+                    self.learnt.remove(fact);
+                }
+                FactChange::Set(..) => {}
+            }
         }
     }
 
@@ -201,6 +243,11 @@ impl Player {
         }
     }
 
+    /// Whether somebody still has something to do, though the story may be over.
+    pub(crate) fn is_at_work(&self) -> bool {
+        !self.at_work.is_empty()
+    }
+
     /// What went otherwise than it should.
     pub(crate) fn failed(&self) -> &[String] {
         &self.failed
@@ -226,7 +273,7 @@ fn is_due(when: &When, agent: &Symbol, event: &Event) -> Option<Time> {
         (When::Once(fact), Happening::BeliefChanged { changes })
             if changes.contains(&FactChange::Add(fact.clone())) =>
         {
-            Some(event.at)
+            Some(event.at + ALL_KNOW)
         }
         _ => None,
     }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use anstyle::Style;
 
-use super::people::rows;
+use super::people::words;
 use crate::style::{BOLD, DIM};
 
 /// Before the first column: the time.
@@ -32,11 +32,16 @@ impl Columns {
     /// The names above their columns.
     pub(super) fn heading(&self) -> String {
         let mut heading = " ".repeat(MARGIN);
-        for name in &self.names {
-            let rest = self.width.saturating_sub(2);
+        for (column, name) in self.names.iter().enumerate() {
+            let is_last = column + 1 == self.names.len();
+            let rest = if is_last {
+                0
+            } else {
+                self.width.saturating_sub(2)
+            };
             let _ = write!(heading, "{DIM}│{DIM:#} {BOLD}{name:<rest$}{BOLD:#}");
         }
-        heading.trim_end().to_owned()
+        heading
     }
 
     /// Words in the column of that name, and the bars of all others. `None` if there is no such column.
@@ -63,7 +68,10 @@ impl Columns {
             }
             for (column, other) in self.names.iter().enumerate() {
                 let (bar, bar_style) = bar(other);
-                let _ = write!(lines, "{bar_style}{bar}{bar_style:#} ");
+                let _ = write!(lines, "{bar_style}{bar}{bar_style:#}");
+                if column == own || column + 1 < self.names.len() {
+                    lines.push(' ');
+                }
                 if column == own {
                     let sign = if index == 0 { sign } else { ' ' };
                     let row = if is_last {
@@ -82,9 +90,8 @@ impl Columns {
 
     /// Words across all columns.
     pub(super) fn across(&self, at_s: f64, (sign, style): (char, Style), text: &str) -> String {
-        let room = self.names.len() * self.width;
         let mut lines = String::new();
-        for (index, row) in rows(text, room.saturating_sub(2)).into_iter().enumerate() {
+        for (index, row) in narrow(text, self.room_across()).into_iter().enumerate() {
             if index == 0 {
                 let _ = write!(lines, "{at_s:>7.1} s {style}{sign} {row}{style:#}");
             } else {
@@ -93,29 +100,59 @@ impl Columns {
         }
         lines
     }
+
+    /// More words across all columns, below others.
+    pub(super) fn below(&self, style: Style, text: &str) -> String {
+        let rows = narrow(text, self.room_across()).into_iter();
+        let rows = rows.map(|row| format!("{:MARGIN$}{style}  {row}{style:#}", ""));
+        rows.collect::<Vec<_>>().join("\n")
+    }
+
+    /// For words across, after a sign and a blank.
+    fn room_across(&self) -> usize {
+        (self.names.len() * self.width).saturating_sub(2)
+    }
 }
 
-/// Text in rows. An expression that is wider than a row is broken, too.
+/// Text in rows. An expression that is wider than a row is broken between its words, and a word that is,
+/// after a hyphen.
 fn narrow(text: &str, room: usize) -> Vec<String> {
-    let mut narrow: Vec<String> = Vec::new();
-    for row in rows(text, room) {
-        if row.chars().count() <= room {
-            narrow.push(row);
-            continue;
-        }
-        let mut last = String::new();
-        for word in row.split(' ') {
-            if !last.is_empty() && last.chars().count() + 1 + word.chars().count() > room {
-                narrow.push(std::mem::take(&mut last));
-                last.push(' ');
-            } else if !last.is_empty() {
-                last.push(' ');
+    let fits = |text: &str| text.chars().count() <= room;
+    let mut narrow = Vec::new();
+    let mut row = String::new();
+    for expression in words(text) {
+        let is_wide = !fits(expression);
+        for (index, word) in expression.split(' ').enumerate() {
+            // One that has to be broken begins a row, and goes on a little to the right.
+            let (word, begins) = match is_wide {
+                true => (word, index == 0),
+                false if index == 0 => (expression, false),
+                false => break,
+            };
+            let longer = format!("{row} {word}");
+            if row.is_empty() {
+                row.push_str(word);
+            } else if !begins && fits(&longer) {
+                row = longer;
+            } else {
+                let indent = if is_wide && index > 0 { " " } else { "" };
+                narrow.push(std::mem::replace(&mut row, format!("{indent}{word}")));
             }
-            last.push_str(word);
+            while let Some(rest) = overhang(&mut row, room) {
+                narrow.push(std::mem::replace(&mut row, format!(" {rest}")));
+            }
         }
-        narrow.push(last);
     }
+    narrow.push(row);
     narrow
+}
+
+/// Takes from a row what does not fit, from the last hyphen that does on. `None` if all of it fits, or it
+/// cannot be broken.
+fn overhang(row: &mut String, room: usize) -> Option<String> {
+    let (end, _) = row.char_indices().nth(room)?;
+    let hyphen = row.get(..end)?.rfind('-')?;
+    Some(row.split_off(hyphen + 1))
 }
 
 #[cfg(test)]
@@ -164,6 +201,63 @@ mod tests {
             narrow("then (move table2 table1 table1-table2)", 24),
             ["then", "(move table2 table1", " table1-table2)"]
         );
+    }
+
+    #[test]
+    fn what_follows_a_broken_expression_follows_it_at_once() {
+        assert_eq!(
+            narrow("since (move table2 table1 table1-table2) needs it", 24),
+            ["since", "(move table2 table1", " table1-table2) needs it"]
+        );
+        assert_eq!(narrow("", 24), [""]);
+    }
+
+    #[test]
+    fn a_word_that_is_too_wide_is_broken_after_a_hyphen() {
+        assert_eq!(
+            narrow("(resume-take-from-tray cola1)", 18),
+            ["(resume-take-from-", " tray cola1)"]
+        );
+        assert_eq!(
+            narrow("(resume-take-from-tray)", 10),
+            ["(resume-", " take-", " from-", " tray)"]
+        );
+        // Rather too wide than broken anywhere.
+        assert_eq!(narrow("unbreakable", 5), ["unbreakable"]);
+    }
+
+    #[test]
+    fn nothing_is_wider_than_a_terminal_of_eighty_columns() {
+        let columns = Columns::new(["k1", "k2", "k3"].map(str::to_owned).to_vec(), 80);
+        let bar = |_: &str| ('│', DIM);
+        let text = "takes up (serve cola ann) again, repaired: (at table1) does not hold, which (resume-take-from-tray cola1 slot1 table1) needs";
+        let said = columns.line(341.8, "k3", ('↩', DIM), text, bar);
+        let said = said.expect("there is such a column");
+        let across = columns.across(1.0, ('»', BOLD), text);
+        let below = columns.below(DIM, text);
+        for shown in [columns.heading(), said, across, below] {
+            for row in plain(&shown).lines() {
+                assert!(row.chars().count() <= 80, "{row}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_line_ends_in_blanks() {
+        let bar = |_: &str| ('│', DIM);
+        let mut shown = vec![
+            columns().heading(),
+            columns().across(0.0, ('»', BOLD), "words"),
+        ];
+        shown.extend(
+            ["k1", "k3"]
+                .iter()
+                .filter_map(|name| columns().line(0.0, name, ('·', DIM), "(grasp cola1)", bar)),
+        );
+        for shown in shown {
+            let shown = plain(&shown);
+            assert_eq!(shown, shown.trim_end(), "{shown:?}");
+        }
     }
 
     #[test]

@@ -5,6 +5,7 @@ mod columns;
 mod json;
 mod people;
 mod progress;
+mod retold;
 mod summary;
 mod team;
 mod words;
@@ -26,6 +27,9 @@ pub(crate) use json::JsonLines;
 pub(crate) use people::ForPeople;
 pub(crate) use team::ForTeam;
 pub(crate) use words::resumption;
+
+/// When a story is over, what is nearly done is shown to its end, if that comes within this.
+const LAST_WORDS: Time = Time(5_000_000);
 
 /// Where it is shown.
 pub(crate) trait Screen {
@@ -79,12 +83,16 @@ pub(crate) async fn show(
         .declare_subscriber(robot.keys.world_pose())
         .await
         .map_err(Failure::failed)?;
+    let mut over_at = None;
     loop {
         if until_done
             && let Some(player) = &mut player
-            && player.is_over()
+            && (over_at.is_some() || player.is_over())
         {
-            return Ok(Ending::Over(player.failed().to_vec()));
+            let end = *over_at.get_or_insert_with(|| robot.clock.now() + LAST_WORDS);
+            if !player.is_at_work() || robot.clock.now() >= end {
+                return Ok(Ending::Over(player.failed().to_vec()));
+            }
         }
         let told = tokio::select! {
             biased;
@@ -109,6 +117,7 @@ pub(crate) async fn show(
                 None
             }
             told = next(player.as_mut(), &robot.clock) => Some(told),
+            () = end(over_at, &robot.clock) => None,
             Ok(sample) = poses.recv_async() => {
                 let snapshot = Snapshot::read(&sample.payload().to_bytes(), site);
                 snapshot.and_then(|snapshot| {
@@ -120,6 +129,13 @@ pub(crate) async fn show(
         if let Some(told) = told {
             screen.told(robot.clock.now(), &told);
         }
+    }
+}
+
+async fn end(at: Option<Time>, clock: &Clock) {
+    match at {
+        Some(at) => clock.sleep_until(at).await,
+        None => std::future::pending().await,
     }
 }
 

@@ -330,7 +330,7 @@ pub(super) fn rows(text: &str, width: usize) -> Vec<String> {
 }
 
 /// Words, parenthesised expressions kept whole.
-fn words(text: &str) -> impl Iterator<Item = &str> {
+pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
     let mut depth = 0_usize;
     text.split(move |c| {
         match c {

@@ -2,26 +2,34 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use agent_core::model::{Symbol, Time};
-use agent_core::protocol::{Event, GoalId, Happening, Urgency};
+use agent_core::model::{Action, Symbol, Time};
+use agent_core::protocol::{ActionId, Event, GoalId, Happening, Urgency};
 use anstyle::Style;
 
 use super::Screen;
 use super::columns::Columns;
 use super::people::width;
-use super::summary::Ledger;
-use super::words::{Line, Observable, of_parent, of_role};
+use super::retold::Retold;
+use super::words::{Line, Observable, of_parent, of_role, resumption};
 use crate::robot::RoleNews;
 use crate::scenario::{Told, What};
-use crate::style::{BAD, BOLD, DIM, URGENT};
+use crate::style::{AGAIN, BAD, BOLD, DIM, URGENT};
 
 /// A timeline for each vehicle.
 pub(crate) struct ForTeam {
     /// What counts as the beginning.
     zero: Time,
     columns: Columns,
+    /// Of the terminal.
+    width: usize,
     /// By vehicle.
-    ledgers: BTreeMap<Symbol, Ledger>,
+    retold: BTreeMap<Symbol, Retold>,
+    /// What each vehicle is in the middle of.
+    running: BTreeMap<Symbol, BTreeMap<ActionId, Action>>,
+    /// The last words about that.
+    meanwhile: Option<String>,
+    /// The goals that are set aside, by vehicle.
+    aside: BTreeSet<(Symbol, GoalId)>,
     /// Emergencies, by vehicle, from when they begin until they end.
     urgent: BTreeMap<Symbol, BTreeSet<GoalId>>,
     accepted_as_urgent: BTreeSet<(Symbol, GoalId)>,
@@ -34,13 +42,18 @@ impl ForTeam {
     pub(crate) fn new(zero: Time, vehicles: impl IntoIterator<Item = Symbol>) -> Self {
         let vehicles: Vec<Symbol> = vehicles.into_iter().collect();
         let names = vehicles.iter().map(ToString::to_string).collect();
+        let width = width();
         let team = Self {
             zero,
-            columns: Columns::new(names, width()),
-            ledgers: vehicles
+            columns: Columns::new(names, width),
+            width,
+            retold: vehicles
                 .into_iter()
-                .map(|name| (name, Ledger::default()))
+                .map(|name| (name, Retold::default()))
                 .collect(),
+            running: BTreeMap::new(),
+            meanwhile: None,
+            aside: BTreeSet::new(),
             urgent: BTreeMap::new(),
             accepted_as_urgent: BTreeSet::new(),
             given: BTreeMap::new(),
@@ -49,10 +62,50 @@ impl ForTeam {
         team
     }
 
-    /// What became of the goals of each vehicle that had any, as a table.
-    pub(crate) fn summaries(&self) -> impl Iterator<Item = (&Symbol, String)> {
-        let tables = self.ledgers.iter();
-        tables.filter_map(|(vehicle, ledger)| Some((vehicle, ledger.table()?)))
+    /// What each vehicle has done, if it has done anything, and what interrupted it.
+    pub(crate) fn retold(&self) -> impl Iterator<Item = String> {
+        let all = self.retold.iter();
+        all.filter_map(|(vehicle, retold)| retold.lines(vehicle.as_str(), self.width))
+    }
+
+    /// What each vehicle is in the middle of.
+    fn keep_up(&mut self, agent: &Symbol, event: &Event) {
+        let running = self.running.entry(agent.clone()).or_default();
+        match &event.what {
+            Happening::ActionStarted { id, action } | Happening::ActionResumed { id, action } => {
+                running.insert(id.clone(), action.clone());
+            }
+            Happening::ActionFinished { id, .. }
+            | Happening::ActionSuspended { id, .. }
+            | Happening::ActionRolledBack { id, .. }
+            | Happening::RecordCleared { id, .. } => {
+                running.remove(id);
+            }
+            _ => {}
+        }
+        let Some(goal) = &event.goal else { return };
+        match &event.what {
+            Happening::GoalSuspended { .. } => {
+                self.aside.insert((agent.clone(), goal.clone()));
+            }
+            Happening::GoalResumed { .. }
+            | Happening::GoalSucceeded
+            | Happening::GoalFailed { .. }
+            | Happening::GoalUnknown { .. } => {
+                self.aside.remove(&(agent.clone(), goal.clone()));
+            }
+            _ => {}
+        }
+    }
+
+    /// What all are in the middle of, in words.
+    fn meanwhile(&self) -> Option<String> {
+        let all = self.running.iter().flat_map(|(vehicle, actions)| {
+            let words = move |action| format!("{vehicle} {action}");
+            actions.values().map(words)
+        });
+        let all: Vec<String> = all.collect();
+        (!all.is_empty()).then(|| format!("meanwhile {}", all.join(", ")))
     }
 
     /// Which vehicle is seeing to an emergency.
@@ -87,6 +140,11 @@ impl ForTeam {
         }
     }
 
+    fn is_aside(&self, agent: &Symbol, event: &Event) -> bool {
+        let goal = event.goal.as_ref();
+        goal.is_some_and(|goal| self.aside.contains(&(agent.clone(), goal.clone())))
+    }
+
     fn bar(&self, vehicle: &str) -> (char, Style) {
         let urgent = self.urgent.get(vehicle);
         match urgent.is_some_and(|urgent| !urgent.is_empty()) {
@@ -103,14 +161,22 @@ impl ForTeam {
 
 impl Screen for ForTeam {
     fn event(&mut self, agent: &Symbol, event: &Event) {
-        let Some(ledger) = self.ledgers.get_mut(agent) else {
+        let Some(retold) = self.retold.get_mut(agent) else {
             return;
         };
-        ledger.note(self.zero, event);
+        retold.note(
+            self.zero,
+            event,
+            event.goal.as_ref().is_some_and(is_execution),
+        );
+        self.keep_up(agent, event);
         self.follow(agent, event);
-        // A plan is long, and its actions are told when they begin.
-        if let Happening::PlanSelected { .. } | Happening::BeliefChanged { .. } = event.what {
-            return;
+        match &event.what {
+            // A plan is long, and its actions are told when they begin.
+            Happening::PlanSelected { .. } | Happening::BeliefChanged { .. } => return,
+            // That it is elsewhere now is no news; how it goes on is told when it does.
+            Happening::PlanRevised { .. } if self.is_aside(agent, event) => return,
+            _ => {}
         }
         if let (Some(goal), Happening::GoalAccepted { tasks, .. }) = (&event.goal, &event.what)
             && is_execution(goal)
@@ -123,7 +189,7 @@ impl Screen for ForTeam {
         let words = event.goal.as_ref().and_then(|goal| self.given.get(goal));
         let named = event.goal.as_ref().map_or("", Symbol::as_str);
         let goal = words.map_or(named, String::as_str);
-        let Some(line) = of_parent(goal, &event.what, &Observable::new()) else {
+        let Some(line) = in_words(goal, &event.what) else {
             return;
         };
         let Line { sign, style, text } = line;
@@ -140,7 +206,16 @@ impl Screen for ForTeam {
     fn told(&mut self, at: Time, told: &Told) {
         match told {
             Told::Said(event) => match (&event.say, &event.what) {
-                (Some(say), _) => self.across(at, '»', BOLD, say),
+                (Some(say), _) => {
+                    self.across(at, '»', BOLD, say);
+                    let meanwhile = self.meanwhile();
+                    if meanwhile != self.meanwhile
+                        && let Some(words) = &meanwhile
+                    {
+                        anstream::println!("{}", self.columns.below(DIM, words));
+                    }
+                    self.meanwhile = meanwhile;
+                }
                 (None, Some(What::Fact(fact))) => self.across(at, '»', BOLD, &fact.to_string()),
                 (None, _) => {}
             },
@@ -154,6 +229,18 @@ impl Screen for ForTeam {
     fn role(&mut self, at: Time, news: &RoleNews) {
         let Line { sign, style, text } = of_role(news);
         self.across(at, sign, style, &text);
+    }
+}
+
+/// An event of a vehicle. Of how it goes on the reason is enough.
+fn in_words(goal: &str, what: &Happening) -> Option<Line> {
+    match what {
+        Happening::GoalResumed { how, why, .. } => Some(Line {
+            sign: '↩',
+            style: AGAIN,
+            text: format!("takes up {goal} again, {}: {why}", resumption(*how)),
+        }),
+        what => of_parent(goal, what, &Observable::new()),
     }
 }
 

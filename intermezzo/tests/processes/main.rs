@@ -5,6 +5,7 @@ mod harness;
 
 mod demo;
 mod ending;
+mod evening;
 mod goals;
 mod locked;
 mod measuring;
