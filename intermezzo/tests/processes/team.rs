@@ -132,6 +132,26 @@ async fn a_goal_can_be_for_one_vehicle_and_status_tells_of_all() {
     assert!(done.out.contains("done"), "{}", done.out);
     let wrong = user.run(&["goal", "(serve cola nobody)"]).await;
     assert_eq!(wrong.code, Some(1), "{wrong:?}");
+    // What is said of nothing that is there, or what vehicles have to find out, is refused.
+    for (fact, words) in [
+        ("(spill table9)", "there is no place `table9`"),
+        ("(seated anna table1)", "did you mean `ann`?"),
+        ("(wants ann tea)", "one of cola, juice, water"),
+        ("(greeted ben)", "not for users to say"),
+    ] {
+        let wrong = user.run(&["fact", fact]).await;
+        assert_eq!(wrong.code, Some(2), "{wrong:?}");
+        assert!(wrong.err.contains(words), "{wrong:?}");
+    }
+    for command in [
+        ["goal", "(reach table1)", "--vehicle", "k9"],
+        ["cancel", "hello", "--vehicle", "k9"],
+    ] {
+        let wrong = user.run(&command).await;
+        assert_eq!(wrong.code, Some(3), "{wrong:?}");
+        let words = "there is no `k9` here: there are k1, k2, k3, room";
+        assert!(wrong.err.contains(words), "{wrong:?}");
+    }
     let status = up.end_by(Signal::SIGINT).await;
     assert_eq!(status.code(), Some(0));
     up.assert_nobody_is_left().await;

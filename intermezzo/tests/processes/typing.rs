@@ -39,7 +39,11 @@ async fn bad_input_is_named() {
         (&["goal", "(go n4)", "--deadline", "-1"], 2, "deadline"),
         (&["fact", "open"], 2, "is not a fact"),
         (&["frobnicate"], 2, "frobnicate"),
-        (&["up", "/no/such/place"], 2, "/no/such/place/map.geojson"),
+        (
+            &["up", "/no/such/place"],
+            2,
+            "there is no folder /no/such/place",
+        ),
         (&["up", "--start", "n99"], 2, "n99"),
         (&["up", "--speed", "0"], 2, "above zero"),
         (&["up", "--robot", "a/b"], 2, "cannot be a name"),
