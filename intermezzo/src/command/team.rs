@@ -4,8 +4,10 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use agent_core::model::{Symbol, Time};
-use agent_link::Client;
+use agent_core::protocol::GoalId;
+use agent_link::{Client, View};
 use maps::Restaurant;
+use serde_json::Value;
 
 use super::up::{Performance, conclude, judge, read_scenario};
 use crate::cli::UpArgs;
@@ -78,7 +80,13 @@ pub(super) async fn perform(
                 Time::ZERO
             }
         };
-        let mut screen = ForTeam::new(zero, vehicles);
+        let mut screen = ForTeam::new(zero, vehicles.clone());
+        if !performance.from_the_start {
+            let client = Client::new(&robot.session, &robot.keys);
+            for (goal, tasks) in goals_of(&client, &vehicles).await {
+                screen.knows(goal, tasks);
+            }
+        }
         let ending = show(&mut robot, programme, &mut interrupted, &mut screen).await;
         for retold in screen.retold() {
             anstream::println!("\n{retold}");
@@ -96,6 +104,23 @@ pub(super) async fn perform(
         conclude(exit, to_the_end, &failed);
     }
     Ok(exit)
+}
+
+/// What vehicles have to do already, if they go on from an earlier state. Who does not answer has nothing.
+async fn goals_of(client: &Client, vehicles: &BTreeSet<Symbol>) -> Vec<(GoalId, String)> {
+    let mut all = Vec::new();
+    for vehicle in vehicles {
+        let goals = client.look(vehicle.as_str(), View::Goals).await;
+        let goals = goals.unwrap_or_default();
+        for goal in goals.as_array().into_iter().flatten() {
+            let tasks = goal["tasks"].as_array().into_iter().flatten();
+            let tasks: Vec<&str> = tasks.filter_map(Value::as_str).collect();
+            if let Some(id) = goal["id"].as_str() {
+                all.push((id.into(), tasks.join(" ")));
+            }
+        }
+    }
+    all
 }
 
 /// How to talk to them, to be copied.

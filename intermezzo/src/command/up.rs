@@ -142,7 +142,7 @@ pub(super) fn judge(ending: Ending) -> (Exit, Vec<String>) {
         Ending::Over(failed) if failed.is_empty() => (Exit::Done, failed),
         Ending::Over(failed) => (Exit::Failed, failed),
         Ending::GivenUp(role, how) => {
-            let what = format!("the {role} ends whenever it is started: {how}");
+            let what = format!("{} ends whenever it is started: {how}", role.in_words());
             (Exit::Failed, vec![what])
         }
     }

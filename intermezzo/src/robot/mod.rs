@@ -340,7 +340,8 @@ async fn all_ready(
                 }
                 RoleNews::GivenUp { role, how } => {
                     return Err(Failure::failed(format_args!(
-                        "the {role} did not start ({how})"
+                        "{} did not start ({how})",
+                        role.in_words()
                     )));
                 }
                 _ => {}

@@ -52,6 +52,14 @@ impl RoleKind {
         }
     }
 
+    /// As people speak of it: vehicles have names of their own.
+    pub fn in_words(&self) -> String {
+        match self {
+            Self::Vehicle(name) => name.to_string(),
+            role => format!("the {role}"),
+        }
+    }
+
     /// Whether it is reality, and has the clock: it begins first, and ends last.
     pub fn is_reality(&self) -> bool {
         matches!(self, Self::World | Self::Room)

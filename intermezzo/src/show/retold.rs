@@ -1,5 +1,6 @@
 //! What a vehicle has done, and why it was interrupted, in a few lines.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use agent_core::model::{Task, Time};
@@ -19,6 +20,9 @@ const TURNS: usize = 4;
 #[derive(Debug, Default)]
 pub(super) struct Retold {
     goals: Vec<Life>,
+    /// Ends of goals whose beginning was not heard: after a new start what was said before may be repeated
+    /// later.
+    ends: BTreeMap<GoalId, (f64, End)>,
 }
 
 /// What became of one.
@@ -55,19 +59,30 @@ impl Retold {
         let Some(goal) = &event.goal else { return };
         let at_s = event.at.since(zero).secs();
         if let Happening::GoalAccepted { tasks, urgency, .. } = &event.what {
+            if self.goals.iter().any(|life| life.goal == *goal) {
+                return;
+            }
             self.goals.push(Life {
                 goal: goal.clone(),
                 words: words(goal, tasks, given),
                 urgent: *urgency == Urgency::Emergency,
                 accepted_s: at_s,
                 turns: Vec::new(),
-                ended: None,
+                ended: self.ends.remove(goal),
             });
             return;
         }
-        let Some(life) = self.goals.iter_mut().find(|life| life.goal == *goal) else {
+        let life = self.goals.iter_mut().find(|life| life.goal == *goal);
+        if let Some(end) = end(&event.what) {
+            match life {
+                Some(life) => life.ended = Some((at_s, end)),
+                None => {
+                    self.ends.insert(goal.clone(), (at_s, end));
+                }
+            }
             return;
-        };
+        }
+        let Some(life) = life else { return };
         let (sign, style, words) = match &event.what {
             Happening::GoalSuspended { why, action } => {
                 let middle = match action {
@@ -90,18 +105,6 @@ impl Retold {
                 failure: Some(failure),
                 ..
             } => ('✗', BAD, format!("{action} has failed: {failure}")),
-            Happening::GoalSucceeded => {
-                life.ended = Some((at_s, End::Done));
-                return;
-            }
-            Happening::GoalFailed { reason } => {
-                life.ended = Some((at_s, End::Failed(reason.clone())));
-                return;
-            }
-            Happening::GoalUnknown { reason } => {
-                life.ended = Some((at_s, End::Unknown(reason.clone())));
-                return;
-            }
             _ => return,
         };
         life.turns.push(Turn {
@@ -172,6 +175,16 @@ impl Retold {
     fn count(&self, which: impl Fn(&Life) -> bool) -> usize {
         self.goals.iter().filter(|life| which(life)).count()
     }
+}
+
+/// How a goal has ended, if that is what has happened.
+fn end(what: &Happening) -> Option<End> {
+    Some(match what {
+        Happening::GoalSucceeded => End::Done,
+        Happening::GoalFailed { reason } => End::Failed(reason.clone()),
+        Happening::GoalUnknown { reason } => End::Unknown(reason.clone()),
+        _ => return None,
+    })
 }
 
 /// What a goal is called.
@@ -257,6 +270,21 @@ k3 did all 2 that it had to do; one of them was interrupted
     ↩ 9.0 s taken up again, continued: the suspended plan still holds
   ✓ spill (clean table3), urgent, 5.0 s to 9.0 s";
         assert_eq!(plain(&told), wanted);
+    }
+
+    #[test]
+    fn what_is_repeated_late_changes_nothing() {
+        let mut retold = evening();
+        let serve = accepted(task("serve", &["cola", "ann"]), Urgency::Normal);
+        note(&mut retold, 1.0, "k2.1.1", serve);
+        let told = |retold: &Retold| retold.lines("k3", 200).map(|told| plain(&told));
+        assert_eq!(told(&retold), told(&evening()));
+        // An end may be heard before its beginning.
+        note(&mut retold, 20.0, "cola", Happening::GoalSucceeded);
+        let cola = accepted(task("serve", &["cola", "ben"]), Urgency::Normal);
+        note(&mut retold, 14.0, "cola", cola);
+        let words = "✓ cola (serve cola ben), 14.0 s to 20.0 s";
+        assert!(told(&retold).is_some_and(|told| told.contains(words)));
     }
 
     #[test]

@@ -62,6 +62,13 @@ impl ForTeam {
         team
     }
 
+    /// Somebody was given these tasks as that goal before this was there to see it.
+    pub(crate) fn knows(&mut self, goal: GoalId, tasks: String) {
+        if is_execution(&goal) {
+            self.given.insert(goal, tasks);
+        }
+    }
+
     /// What each vehicle has done, if it has done anything, and what interrupted it.
     pub(crate) fn retold(&self) -> impl Iterator<Item = String> {
         let all = self.retold.iter();
@@ -189,7 +196,8 @@ impl Screen for ForTeam {
         let words = event.goal.as_ref().and_then(|goal| self.given.get(goal));
         let named = event.goal.as_ref().map_or("", Symbol::as_str);
         let goal = words.map_or(named, String::as_str);
-        let Some(line) = in_words(goal, &event.what) else {
+        let said = words.and_then(|_| of_a_given_one(&event.what));
+        let Some(line) = in_words(goal, said.as_ref().unwrap_or(&event.what)) else {
             return;
         };
         let Line { sign, style, text } = line;
@@ -241,6 +249,18 @@ fn in_words(goal: &str, what: &Happening) -> Option<Line> {
             text: format!("takes up {goal} again, {}: {why}", resumption(*how)),
         }),
         what => of_parent(goal, what, &Observable::new()),
+    }
+}
+
+/// An end of a task that was given. Users do not speak to whom it was given, but to whoever has given it: to
+/// them it was not the user who called it off, and after a new start of theirs nobody was.
+fn of_a_given_one(what: &Happening) -> Option<Happening> {
+    match what {
+        Happening::GoalFailed { reason } if reason == "the user has cancelled it" => {
+            let reason = "it was called off, or is given back after a new start".to_owned();
+            Some(Happening::GoalFailed { reason })
+        }
+        _ => None,
     }
 }
 

@@ -239,11 +239,12 @@ pub(super) fn of_role(news: &RoleNews) -> Line {
                 'i',
                 AGAIN,
                 format!(
-                    "the {role} is there again after {:.1} s",
+                    "{} is there again after {:.1} s",
+                    role.in_words(),
                     after.as_secs_f64()
                 ),
             ),
-            None => line('i', DIM, format!("the {role} is there")),
+            None => line('i', DIM, format!("{} is there", role.in_words())),
         },
         RoleNews::Ended {
             role, how, next_in, ..
@@ -251,28 +252,35 @@ pub(super) fn of_role(news: &RoleNews) -> Line {
             '!',
             BAD,
             format!(
-                "the {role} has died ({how}); it is started again in {:.1} s",
+                "{} has died ({how}); it is started again in {:.1} s",
+                role.in_words(),
                 next_in.as_secs_f64()
             ),
         ),
         RoleNews::Silent { role, pid } => line(
             '!',
             BAD,
-            format!("the {role} does not answer (process {pid})"),
+            format!("{} does not answer (process {pid})", role.in_words()),
         ),
-        RoleNews::Answers { role, .. } => line('i', AGAIN, format!("the {role} answers again")),
+        RoleNews::Answers { role, .. } => {
+            line('i', AGAIN, format!("{} answers again", role.in_words()))
+        }
         RoleNews::Killed { role, pid, after } => line(
             '!',
             BAD,
             format!(
-                "the {role} has not answered for {:.0} s: its process {pid} is killed",
+                "{} has not answered for {:.0} s: its process {pid} is killed",
+                role.in_words(),
                 after.as_secs_f64()
             ),
         ),
         RoleNews::GivenUp { role, .. } => line(
             '✗',
             BAD,
-            format!("the {role} ends whenever it is started, so everything is ended"),
+            format!(
+                "{} ends whenever it is started, so everything is ended",
+                role.in_words()
+            ),
         ),
     }
 }
