@@ -64,6 +64,12 @@ pub trait Durable: Machine {
         false
     }
 
+    /// Whether a report on that execution counts if it is from `by`; one that does not is as if it had not
+    /// come.
+    fn believes(&self, _by: &Symbol, _id: &ActionId) -> bool {
+        true
+    }
+
     /// Whether an output to elsewhere stops something. Stopping never waits for the disk
     /// (decision 10).
     fn is_stop(_output: &Self::Out) -> bool {

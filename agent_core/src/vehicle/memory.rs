@@ -56,6 +56,14 @@ impl<A: Mind, P: Planner> Durable for Vehicle<A, P> {
         self.mind.is_suspended(superior, id)
     }
 
+    /// Of a task, who has or had it; of an action, whoever executes.
+    fn believes(&self, by: &Symbol, id: &ActionId) -> bool {
+        match self.tasks.is_own(id) {
+            true => self.tasks.executor_of(id) == Some(by),
+            false => self.executors.contains(by),
+        }
+    }
+
     fn is_stop(_: &Message) -> bool {
         false
     }

@@ -52,6 +52,8 @@ pub struct EndedTask {
 #[derive(Clone, Debug)]
 pub struct Vehicle<A, P> {
     name: Symbol,
+    /// Who executes what the agent does.
+    executors: BTreeSet<Symbol>,
     mind: A,
     tasks: TaskService,
     states: StateService,
@@ -92,6 +94,7 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
         );
         let mut vehicle = Self {
             name,
+            executors: configuration.executors.all().into_iter().collect(),
             mind,
             tasks,
             states,

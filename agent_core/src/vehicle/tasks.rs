@@ -64,6 +64,11 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
 
     /// From another vehicle.
     pub(super) fn instructed(&mut self, from: &Symbol, instruction: Instruction) -> Answer {
+        let id = instruction.id();
+        if id.agent != *from {
+            let reason = format!("{id} is not for {from} to give or to take back");
+            return Answer::Rejected { reason };
+        }
         match instruction {
             Instruction::Execute { id, .. } => {
                 // What was bid for is what is done.

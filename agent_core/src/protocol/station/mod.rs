@@ -169,7 +169,9 @@ where
                     self.mailboxes.reports_in.applied(&message, None);
                     let seq = message.seq;
                     let ReportBody { id, report } = message.body;
-                    self.tell(now, Input::Report { id, report });
+                    if self.machine.believes(&message.from, &id) {
+                        self.tell(now, Input::Report { id, report });
+                    }
                     self.respond(opened.sender, Response::Applied { seq, answer: None });
                 }
             }

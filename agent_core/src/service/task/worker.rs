@@ -11,7 +11,7 @@ const MOST_OFFERS: usize = 256;
 impl TaskService {
     pub(super) fn heard_tasks(&mut self, by: &Symbol, at: Time, tasks: &Tasks) {
         // What has been said for good, a late message included: the lease counts from when it was said.
-        for award in &tasks.awards {
+        for award in tasks.awards.iter().filter(|award| award.id.agent == *by) {
             if award.to == self.name
                 && let Some(taken) = self.taken.get_mut(&award.id)
             {

@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use super::*;
 use crate::model::Atom;
 use crate::protocol::Answer;
+use crate::service::Award;
 
 const CAN: Option<Time> = Some(Time(10_000_000));
 
@@ -162,6 +163,34 @@ fn an_execution_that_comes_when_its_lease_would_have_run_out_is_not_begun() {
     assert!(w.clone().take(at(1.9) + lease, &id).is_ok());
     let refused = w.take(at(2.0) + lease, &id);
     assert_eq!(refused, Err(Unwilling::TooLate(id)));
+}
+
+#[test]
+fn nobody_renews_the_lease_of_what_another_has_awarded() {
+    let (_, mut w, id) = a_task_that_was_given();
+    let lease = Times::default().lease;
+    let award = Award {
+        task: "t".into(),
+        id: id.clone(),
+        what: new_task().what,
+        to: "w".into(),
+    };
+    let mut renewed = w.clone();
+    for (by, service) in [("p", &mut renewed), ("x", &mut w)] {
+        let message = Message {
+            by: by.into(),
+            at: at(3.0),
+            body: Body::Tasks(Tasks {
+                awards: vec![award.clone()],
+                ..Tasks::default()
+            }),
+        };
+        service.settle(at(3.0));
+        service.heard(&message);
+    }
+    let late = at(2.5) + lease;
+    assert!(renewed.take(late, &id).is_ok());
+    assert_eq!(w.take(late, &id).err(), Some(Unwilling::TooLate(id)));
 }
 
 #[test]
