@@ -10,15 +10,13 @@ use agent_core::model::{Fact, FactChange, Symbol};
 
 use crate::wire::Observed;
 
-/// What an agent has told all its superiors.
+/// What an agent has told all its superiors, or one of them.
 #[derive(Debug)]
 pub(crate) struct Board {
     epoch: u64,
     seq: u64,
     /// The last word about each fact, and about each value (`true`).
     last: BTreeMap<(bool, Fact), FactChange>,
-    /// What was told each superior alone when that was done last.
-    alone: BTreeMap<Symbol, Vec<FactChange>>,
 }
 
 impl Board {
@@ -27,7 +25,6 @@ impl Board {
             epoch,
             seq: 0,
             last: BTreeMap::new(),
-            alone: BTreeMap::new(),
         }
     }
 
@@ -44,26 +41,20 @@ impl Board {
         Observed::new(self.epoch, self.seq, facts, reported_to)
     }
 
-    /// The same for all that can be told one superior alone now.
-    pub(crate) fn tell_one(
+    /// The same for all that can be told now: what was told before may be so no more.
+    pub(crate) fn tell_anew(
         &mut self,
-        to: &Symbol,
-        facts: Vec<FactChange>,
-        reported: bool,
+        facts: &[FactChange],
+        reported_to: Option<&Symbol>,
     ) -> Observed {
-        self.seq += 1;
-        let message = Observed::new(self.epoch, self.seq, &[], reported.then_some(to));
-        let message = message.with_alone(to, &facts);
-        self.alone.insert(to.clone(), facts);
-        message
+        self.last.clear();
+        self.tell(facts, reported_to)
     }
 
     /// All that has been told.
     pub(crate) fn all(&self) -> Observed {
         let facts: Vec<FactChange> = self.last.values().cloned().collect();
-        let all = Observed::new(self.epoch, self.seq, &facts, None);
-        let alone = self.alone.iter();
-        alone.fold(all, |all, (to, facts)| all.with_alone(to, facts))
+        Observed::new(self.epoch, self.seq, &facts, None)
     }
 }
 
@@ -102,23 +93,22 @@ impl Reader {
             // The report comes by itself, and in order with what follows it.
             return Reading::Ignore;
         }
-        take(message, own)
+        take(message)
     }
 
-    /// Takes the answer to the question for all, as `own`.
-    pub(crate) fn all(&mut self, message: Observed, own: &str) -> Reading {
+    /// Takes the answer to the question for all.
+    pub(crate) fn all(&mut self, message: Observed) -> Reading {
         let at = (message.epoch, message.seq);
         if message.seq == 0 || self.last.is_some_and(|last| at <= last) {
             return Reading::Ignore;
         }
         self.last = Some(at);
-        take(message, own)
+        take(message)
     }
 }
 
-fn take(message: Observed, own: &str) -> Reading {
-    match message.into_facts(own) {
-        // It was for somebody else.
+fn take(message: Observed) -> Reading {
+    match message.into_facts() {
         facts if facts.is_empty() => Reading::Ignore,
         facts => Reading::Take(facts),
     }
@@ -150,12 +140,12 @@ mod tests {
         let _lost = board.tell(&[not_at("n1"), at("n2")], None);
         let third = board.tell(&[FactChange::Set(Atom::new("charge", []), 0.5)], None);
         assert_eq!(reader.published(third, "child"), Reading::Missed);
-        let Reading::Take(all) = reader.all(board.all(), "child") else {
+        let Reading::Take(all) = reader.all(board.all()) else {
             unreachable!("the answer is newer than what is known")
         };
         assert_eq!(all.len(), 3);
         assert!(all.contains(&not_at("n1")) && all.contains(&at("n2")));
-        assert_eq!(reader.all(board.all(), "child"), Reading::Ignore);
+        assert_eq!(reader.all(board.all()), Reading::Ignore);
         let fourth = board.tell(&[at("n3")], None);
         assert_eq!(
             reader.published(fourth, "child"),
@@ -177,22 +167,19 @@ mod tests {
     }
 
     #[test]
-    fn what_is_for_one_superior_alone_no_other_hears_and_none_misses() {
+    fn what_is_told_anew_takes_the_place_of_what_was_told() {
         let mut board = Board::new(7);
-        let (mut k2, mut k3) = (Reader::default(), Reader::default());
-        let of_k3 = board.tell_one(&"k3".into(), vec![at("n1")], false);
-        assert_eq!(k2.published(of_k3.clone(), "k2"), Reading::Ignore);
-        assert_eq!(k3.published(of_k3, "k3"), Reading::Take(vec![at("n1")]));
-        let of_k2 = board.tell_one(&"k2".into(), vec![at("n2")], false);
-        assert_eq!(k2.published(of_k2, "k2"), Reading::Take(vec![at("n2")]));
-        let in_a_report = board.tell_one(&"k2".into(), vec![not_at("n2")], true);
-        assert_eq!(k2.published(in_a_report, "k2"), Reading::Ignore);
-        let _lost = board.tell_one(&"k2".into(), vec![at("n3")], false);
-        let of_all = board.tell(&[at("n9")], None);
-        assert_eq!(k2.published(of_all, "k2"), Reading::Missed);
+        let mut k3 = Reader::default();
+        let seen = |facts: &[FactChange]| Reading::Take(facts.to_vec());
+        let first = board.tell_anew(&[at("n1"), not_at("n2")], None);
+        assert_eq!(k3.published(first, "k3"), seen(&[at("n1"), not_at("n2")]));
+        let in_a_report = board.tell_anew(&[not_at("n1")], Some(&"k3".into()));
+        assert_eq!(k3.published(in_a_report, "k3"), Reading::Ignore);
+        let _lost = board.tell_anew(&[at("n3")], None);
+        let last = board.tell_anew(&[at("n4")], None);
+        assert_eq!(k3.published(last, "k3"), Reading::Missed);
         // What was seen before is not said again: it may be so no more.
-        let all = Reading::Take(vec![at("n9"), at("n3")]);
-        assert_eq!(k2.all(board.all(), "k2"), all);
+        assert_eq!(k3.all(board.all()), seen(&[at("n4")]));
     }
 
     #[test]
@@ -206,9 +193,6 @@ mod tests {
         let reading = reader.published(before.tell(&[at("n3")], None), "child");
         assert_eq!(reading, Reading::Ignore);
         // A board that has nothing on it says nothing.
-        assert_eq!(
-            Reader::default().all(Board::new(9).all(), "child"),
-            Reading::Ignore
-        );
+        assert_eq!(Reader::default().all(Board::new(9).all()), Reading::Ignore);
     }
 }

@@ -1,14 +1,12 @@
 //! What has come in, as the machine's station takes it; and the station's response, as an answer.
 
-use std::sync::Arc;
-
 use agent_core::protocol::{self, Arrival, Envelope, GoalRequest, Input, Response, Urgency};
 use serde_json::Value;
 use zenoh::bytes::ZBytes;
 
-use crate::facts::Reading;
+use crate::facts::{Board, Reading};
 use crate::link::Link;
-use crate::mailbox::{self, Asked};
+use crate::mailbox::{self, Asked, Told};
 use crate::question::{Question, bounded};
 use crate::wire::{
     self, AGENT_LIMIT_BYTES, Acknowledgement, CommandVerdict, FactsVerdict, Instruction, Message,
@@ -70,9 +68,10 @@ impl Link {
                 self.read_goal(urgency, sender.as_deref(), asked, for_any)
             }
             Raw::OwnGoal(urgency, asked) => self.read_goal(urgency, None, asked, None),
-            Raw::Said(payload) => {
+            Raw::Said(by, payload) => {
                 let said = bounded(&payload, AGENT_LIMIT_BYTES)
                     .and_then(|bytes| wire::read("message", &bytes))
+                    .and_then(|message| said_by(&by, message))
                     .and_then(local);
                 match said {
                     Ok(said) => Some(nobody_waits(Input::Local(said))),
@@ -98,10 +97,16 @@ impl Link {
                 }
             }
             Raw::Facts(asked) => read_facts(asked),
-            Raw::Observed(executor, payload) => self.read_observed(&executor, &payload, false),
-            Raw::AllObserved(executor, payload) => self.read_observed(&executor, &payload, true),
+            Raw::Observed(told, payload) => self.read_observed(&told, &payload, false),
+            Raw::AllObserved(told, payload) => self.read_observed(&told, &payload, true),
             Raw::WhatHolds(question) => {
-                question.answer(wire::write(&self.board.all()));
+                let board = match question.asker() {
+                    None => Some(&self.board),
+                    Some(superior) => self.boards.get(&**superior),
+                };
+                let nothing = || Board::new(self.wiring.epoch).all();
+                let all = board.map_or_else(nothing, Board::all);
+                question.answer(wire::write(&all));
                 None
             }
             Raw::Neighbour {
@@ -124,12 +129,16 @@ impl Link {
         let message = question
             .content(what, AGENT_LIMIT_BYTES)
             .and_then(|bytes| wire::read::<Message<Value>>(what, &bytes));
-        let refused = match message {
-            Ok(message) => match self.wiring.keys.agent(message.sender()) {
+        let refused = match (message, question.asker()) {
+            (Ok(message), Some(asker)) if **asker != *message.sender() => {
+                let sender = message.sender();
+                format!("the {what} says that it is from `{sender}`, and its key from `{asker}`")
+            }
+            (Ok(message), _) => match self.wiring.keys.agent(message.sender()) {
                 Ok(_) => return Some((message, question)),
                 Err(error) => error.to_string(),
             },
-            Err(error) => error.to_string(),
+            (Err(error), _) => error.to_string(),
         };
         tracing::warn!("{refused}");
         acknowledge(question, &Acknowledgement::refused(None, refused));
@@ -232,24 +241,19 @@ impl Link {
         }
     }
 
-    fn read_observed<L>(
-        &mut self,
-        executor: &Arc<str>,
-        payload: &ZBytes,
-        all: bool,
-    ) -> Option<Taken<L>> {
+    fn read_observed<L>(&mut self, told: &Told, payload: &ZBytes, all: bool) -> Option<Taken<L>> {
         let message = bounded(payload, AGENT_LIMIT_BYTES)
             .and_then(|bytes| wire::read::<Observed>("facts", &bytes));
         let message = match message {
             Ok(message) => message,
             Err(error) => {
-                tracing::warn!("from {executor}: {error}");
+                tracing::warn!("from {}: {error}", told.executor);
                 return None;
             }
         };
-        let reader = self.readers.entry(executor.clone()).or_default();
+        let reader = self.readers.entry(told.clone()).or_default();
         let reading = if all {
-            reader.all(message, &self.wiring.name)
+            reader.all(message)
         } else {
             reader.published(message, &self.wiring.name)
         };
@@ -257,7 +261,7 @@ impl Link {
             Reading::Take(facts) => Some(nobody_waits(Input::Observation(facts))),
             Reading::Ignore => None,
             Reading::Missed => {
-                self.ask_what_holds(executor);
+                self.ask_what_holds(told);
                 None
             }
         }
@@ -280,7 +284,12 @@ impl Link {
         }
         let mut executors = self.wiring.executors.iter();
         if appeared && executors.any(|executor| executor == name) {
-            self.ask_what_holds(&Arc::from(name));
+            for alone in [false, true] {
+                let executor = name.into();
+                if !alone || self.wiring.signs {
+                    self.ask_what_holds(&Told { executor, alone });
+                }
+            }
         }
         let there = self.neighbours.hear(name, epoch, appeared);
         if appeared {
@@ -293,9 +302,14 @@ impl Link {
         Some(nobody_waits(Input::Neighbour { name, there }))
     }
 
-    fn ask_what_holds(&self, executor: &Arc<str>) {
-        match self.wiring.keys.agent(executor) {
-            Ok(keys) => self.mailbox.ask_what_holds(executor.clone(), keys.facts()),
+    fn ask_what_holds(&self, told: &Told) {
+        let key = self.wiring.keys.agent(&told.executor);
+        let key = key.and_then(|its| match told.alone {
+            true => its.facts_for(&self.wiring.name),
+            false => Ok(its.facts()),
+        });
+        match key {
+            Ok(key) => self.mailbox.ask_what_holds(told.clone(), key),
             Err(error) => tracing::error!("{error}"),
         }
     }
@@ -383,6 +397,18 @@ const FAULT: &str = "the agent gave no answer, which is a fault in it";
 /// What was asked for has been heard, and may be done.
 fn not_acknowledged(trouble: &str) -> String {
     format!("{trouble}; it is not acknowledged: it may be done all the same, or forgotten")
+}
+
+/// Nobody of a team speaks for another: what is said is by whom the key names.
+fn said_by(by: &str, message: Value) -> Result<Value, WireError> {
+    match message["by"].as_str() {
+        Some(says) if says == by => Ok(message),
+        says => {
+            let says = says.unwrap_or("nobody");
+            let why = format_args!("it says that it is by `{says}`, and its key by `{by}`");
+            Err(WireError::malformed("message", why))
+        }
+    }
 }
 
 fn nobody_waits<L>(input: Input<L>) -> Taken<L> {

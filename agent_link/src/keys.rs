@@ -102,6 +102,12 @@ impl Keys {
         check_name(sender).ok().map(|()| sender)
     }
 
+    /// Who says something on a key that ends with that.
+    pub fn read_last(key: &str) -> Option<&str> {
+        let (_, last) = key.rsplit_once('/')?;
+        check_name(last).ok().map(|()| last)
+    }
+
     /// What became of goals that came by plain put: published.
     pub fn goal_answers(&self) -> String {
         self.under("goal/answers")
@@ -122,9 +128,15 @@ impl Keys {
         self.under("event")
     }
 
-    /// What vehicles say to all others of their team: published.
-    pub fn team(&self) -> String {
-        self.under("team")
+    /// What one vehicle says to all others of its team: published.
+    pub fn team(&self, vehicle: &str) -> Result<String, NameError> {
+        self.agent(vehicle)?;
+        Ok(self.under(&format!("team/{vehicle}")))
+    }
+
+    /// What anyone says to all others of a team.
+    pub fn team_any(&self) -> String {
+        self.under("team/*")
     }
 
     /// The world's clock: query.
@@ -214,6 +226,28 @@ impl AgentKeys {
         self.under("facts")
     }
 
+    /// What comes on one of its keys, from somebody of that name.
+    ///
+    /// # Errors
+    /// If that cannot be part of a key.
+    pub fn by(key: &str, sender: &str) -> Result<String, NameError> {
+        check_name(sender)?;
+        Ok(format!("{key}/{sender}"))
+    }
+
+    /// What comes on one of its keys, from anyone who says who that is.
+    pub fn by_any(key: &str) -> String {
+        format!("{key}/*")
+    }
+
+    /// As [`facts`](Self::facts), for one superior alone.
+    ///
+    /// # Errors
+    /// If its name cannot be part of a key.
+    pub fn facts_for(&self, superior: &str) -> Result<String, NameError> {
+        Self::by(&self.facts(), superior)
+    }
+
     /// Goals for this agent in particular that wait for their turn: put or query.
     pub fn goal_normal(&self) -> String {
         self.under("goal/normal")
@@ -279,6 +313,20 @@ mod tests {
         assert_eq!(Keys::read_sender(&keys.goal_emergency()), None);
         assert_eq!(Keys::read_sender("intermezzo/r/goal/normal/*"), None);
         assert!(keys.goal_normal_by("a/b").is_err());
+    }
+
+    #[test]
+    fn keys_of_a_team_say_who_speaks() {
+        let keys = Keys::new("r").unwrap();
+        assert_eq!(keys.team("k1"), Ok("intermezzo/r/team/k1".to_owned()));
+        assert!(keys.team("*").is_err());
+        let room = keys.agent("room").unwrap();
+        let key = AgentKeys::by(&room.instruction(), "k1").unwrap();
+        assert_eq!(key, "intermezzo/r/room/instruction/k1");
+        assert_eq!(Keys::read_last(&key), Some("k1"));
+        assert_eq!(Keys::read_last(&AgentKeys::by_any(&room.report())), None);
+        assert!(AgentKeys::by(&room.instruction(), "k1/**").is_err());
+        assert!(room.facts_for("*").is_err());
     }
 
     #[test]

@@ -1,7 +1,6 @@
 //! All that one machine is connected by, and what it sends. What it receives is in `incoming`.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::time::Instant;
 
 use agent_core::model::{Symbol, Time};
@@ -13,7 +12,8 @@ use crate::channel::{Delivery, Sender, send_ahead};
 use crate::facts::{Board, Reader};
 use crate::incoming::ReplyTo;
 use crate::inspect::{Inspect, View};
-use crate::mailbox::{Arrival, Mailbox};
+use crate::keys::{AgentKeys, NameError};
+use crate::mailbox::{Arrival, Mailbox, Told};
 use crate::neighbours::Neighbours;
 use crate::publisher::Publisher;
 use crate::question::Question;
@@ -36,8 +36,11 @@ pub(crate) struct Link {
     pub(crate) neighbours: Neighbours,
     /// Why the journal cannot be written at present.
     pub(crate) trouble: Option<String>,
+    /// What it has told all its superiors.
     pub(crate) board: Board,
-    pub(crate) readers: BTreeMap<Arc<str>, Reader>,
+    /// What it has told each of them alone.
+    pub(crate) boards: BTreeMap<Symbol, Board>,
+    pub(crate) readers: BTreeMap<Told, Reader>,
     quota: Quota,
     opened: Instant,
 }
@@ -59,6 +62,7 @@ impl Link {
             to_superiors: BTreeMap::new(),
             to_elsewhere: None,
             board: Board::new(wiring.epoch),
+            boards: BTreeMap::new(),
             readers: BTreeMap::new(),
             quota: Quota::new(wiring.limits),
             opened: Instant::now(),
@@ -146,7 +150,7 @@ impl Link {
         match effect {
             Effect::Instruct { to, message } => {
                 if !self.to_executors.contains_key(&to) {
-                    let key = self.wiring.keys.agent(to.as_str())?.instruction();
+                    let key = self.signed(self.wiring.keys.agent(to.as_str())?.instruction())?;
                     let sender = self.to_executor(&to, key);
                     self.to_executors.insert(to.clone(), sender);
                 }
@@ -156,14 +160,14 @@ impl Link {
                 }
             }
             Effect::StopAhead { to, message } => {
-                let key = self.wiring.keys.agent(to.as_str())?.instruction();
+                let key = self.signed(self.wiring.keys.agent(to.as_str())?.instruction())?;
                 let message = message.map(|body| Instruction::from(&body));
                 let text = wire::write(&Message::from(&message).ahead())?;
                 send_ahead(&self.session, key, text);
             }
             Effect::Report { to, message } => {
                 if !self.to_superiors.contains_key(&to) {
-                    let key = self.wiring.keys.agent(to.as_str())?.report();
+                    let key = self.signed(self.wiring.keys.agent(to.as_str())?.report())?;
                     let sender = self.to_superior(&to, key);
                     self.to_superiors.insert(to.clone(), sender);
                 }
@@ -185,8 +189,11 @@ impl Link {
                 facts,
                 reported,
             } => {
-                let message = self.board.tell_one(&to, facts, reported);
-                let key = self.wiring.keys.agent(&self.wiring.name)?.facts();
+                let message = self
+                    .board_for(&to)
+                    .tell_anew(&facts, reported.then_some(&to));
+                let own = self.wiring.keys.agent(&self.wiring.name)?;
+                let key = own.facts_for(to.as_str())?;
                 self.publisher.urgent(key, wire::write(&message)?);
             }
             Effect::Event { number, event } => {
@@ -196,8 +203,8 @@ impl Link {
             }
             Effect::Local(message) if self.wiring.in_team => {
                 let said = local_as_value(&message.body)?;
-                self.publisher
-                    .urgent(self.wiring.keys.team(), said.to_string());
+                let key = self.wiring.keys.team(&self.wiring.name)?;
+                self.publisher.urgent(key, said.to_string());
             }
             Effect::Local(message) => match &self.to_elsewhere {
                 Some(sender) => {
@@ -210,6 +217,21 @@ impl Link {
             Effect::Respond { to, response, line } => self.respond(to, response, line),
         }
         Ok(())
+    }
+
+    /// That key, or what this machine says on it if its name has to stand there.
+    fn signed(&self, key: String) -> Result<String, NameError> {
+        match self.wiring.signs {
+            true => AgentKeys::by(&key, &self.wiring.name),
+            false => Ok(key),
+        }
+    }
+
+    /// What this machine has told that superior alone.
+    fn board_for(&mut self, superior: &Symbol) -> &mut Board {
+        let epoch = self.wiring.epoch;
+        let boards = self.boards.entry(superior.clone());
+        boards.or_insert_with(|| Board::new(epoch))
     }
 
     /// Publishes a snapshot, unless the network is busy.

@@ -20,7 +20,7 @@ use zenoh::query::{ConsolidationMode, Queryable};
 use zenoh::sample::SampleKind;
 
 use crate::inspect::View;
-use crate::keys::Keys;
+use crate::keys::{AgentKeys, Keys};
 use crate::question::Question;
 use crate::queue::{Arrivals, Lane, lanes};
 use crate::wiring::{LinkError, Wiring};
@@ -46,20 +46,20 @@ pub(crate) enum Arrival {
     Goal(Urgency, Option<Arc<str>>, Asked),
     /// From a user, for this machine in particular.
     OwnGoal(Urgency, Asked),
-    /// From one of the team to all.
-    Said(ZBytes),
+    /// From one of the team, which the key names, to all.
+    Said(Arc<str>, ZBytes),
     /// From a user.
     Command(Question),
     /// From a user or a sensor.
     Facts(Asked),
     /// Somebody wants to look inside.
     Look(View, Question),
-    /// A superior wants to know all that was told.
+    /// A superior wants to know all that was told; or what was told it alone, if the key names it.
     WhatHolds(Question),
-    /// Told by this executor.
-    Observed(Arc<str>, ZBytes),
-    /// All that was told by this executor.
-    AllObserved(Arc<str>, ZBytes),
+    /// Told by an executor.
+    Observed(Told, ZBytes),
+    /// All that was told by an executor.
+    AllObserved(Told, ZBytes),
     /// Somebody has appeared (`true`) or vanished, in this epoch.
     Neighbour {
         name: String,
@@ -84,6 +84,14 @@ pub(crate) enum Arrival {
 pub(crate) enum Asked {
     Put(ZBytes),
     Query(Question),
+}
+
+/// Whose facts those are, and whom they were told.
+#[derive(Clone, Debug, Eq, Ord, PartialEq, PartialOrd)]
+pub(crate) struct Told {
+    pub(crate) executor: Arc<str>,
+    /// This machine alone.
+    pub(crate) alone: bool,
 }
 
 /// All that is declared for one machine, as long as it lives.
@@ -121,9 +129,19 @@ impl Mailbox {
         for (key, arrival) in [
             (own.instruction(), Arrival::Instruction as fn(_) -> _),
             (own.report(), Arrival::Report),
-            (own.facts(), Arrival::WhatHolds),
         ] {
-            mailbox.asked(key, agents.clone(), arrival).await?;
+            match wiring.signs {
+                true => mailbox.signed(&key, agents.clone(), arrival).await?,
+                false => mailbox.asked(key, agents.clone(), arrival).await?,
+            }
+        }
+        let facts = own.facts();
+        mailbox
+            .asked(facts.clone(), agents.clone(), Arrival::WhatHolds)
+            .await?;
+        if wiring.signs {
+            let what_holds = Arrival::WhatHolds;
+            mailbox.signed(&facts, agents.clone(), what_holds).await?;
         }
         for view in View::ALL {
             let look = move |question| Arrival::Look(view, question);
@@ -163,9 +181,7 @@ impl Mailbox {
             mailbox.asked(key, users.clone(), Arrival::Command).await?;
         }
         if wiring.in_team {
-            mailbox
-                .put(keys.team(), agents.clone(), Arrival::Said)
-                .await?;
+            mailbox.said(keys.team_any(), agents.clone()).await?;
         }
         if wiring.takes_facts {
             let put = |put| Arrival::Facts(Asked::Put(put));
@@ -174,10 +190,17 @@ impl Mailbox {
             mailbox.asked(keys.facts(), users, query).await?;
         }
         for executor in &wiring.executors {
-            let name: Arc<str> = Arc::from(executor.as_str());
-            let told = move |put| Arrival::Observed(name.clone(), put);
-            let key = keys.agent(executor)?.facts();
-            mailbox.put(key, agents.clone(), told).await?;
+            let its = keys.agent(executor)?;
+            let mut facts = vec![(its.facts(), false)];
+            if wiring.signs {
+                facts.push((its.facts_for(&wiring.name)?, true));
+            }
+            for (key, alone) in facts {
+                let executor = Arc::from(executor.as_str());
+                let told = Told { executor, alone };
+                let told = move |put| Arrival::Observed(told.clone(), put);
+                mailbox.put(key, agents.clone(), told).await?;
+            }
         }
         mailbox.watch_neighbours(wiring).await?;
         let token = session.liveliness().declare_token(keys.alive_remembering(
@@ -248,6 +271,41 @@ impl Mailbox {
         Ok(())
     }
 
+    /// Queries on `key` with the name of whoever asks come in as `arrival`. One that names nobody is
+    /// not answered.
+    async fn signed(
+        &mut self,
+        key: &str,
+        lane: Lane,
+        arrival: impl Fn(Question) -> Arrival + Send + Sync + 'static,
+    ) -> Result<(), LinkError> {
+        let runtime = self.runtime.clone();
+        let queryable = self.session.declare_queryable(AgentKeys::by_any(key));
+        let queryable = queryable.complete(true).callback(move |query| {
+            if let Some(question) = Question::signed(query, &runtime) {
+                lane.deliver(arrival(question));
+            }
+        });
+        self.queryables
+            .push(queryable.await.map_err(LinkError::Zenoh)?);
+        Ok(())
+    }
+
+    /// What the others of the team say to all comes in, from whom the key names.
+    async fn said(&mut self, key: String, lane: Lane) -> Result<(), LinkError> {
+        let subscriber = self.session.declare_subscriber(key);
+        let subscriber = subscriber.callback(move |sample| {
+            if sample.kind() == SampleKind::Put
+                && let Some(by) = Keys::read_last(sample.key_expr())
+            {
+                lane.deliver(Arrival::Said(Arc::from(by), sample.payload().clone()));
+            }
+        });
+        self.subscribers
+            .push(subscriber.await.map_err(LinkError::Zenoh)?);
+        Ok(())
+    }
+
     /// Puts on `key` come in as `arrival`.
     async fn put(
         &mut self,
@@ -304,11 +362,11 @@ impl Mailbox {
     }
 
     /// Asks an executor for all it has told so far; the answer arrives by itself.
-    pub(crate) fn ask_what_holds(&self, executor: Arc<str>, key: String) {
+    pub(crate) fn ask_what_holds(&self, told: Told, key: String) {
         let (session, agents) = (self.session.clone(), self.agents.clone());
         self.runtime.spawn(async move {
             for _ in 0..FACTS_ATTEMPTS {
-                let (agents, executor) = (agents.clone(), executor.clone());
+                let (agents, told) = (agents.clone(), told.clone());
                 let (answered, mut answer) = mpsc::unbounded_channel();
                 // Into the queue right where it is read from the network, and with the priority of
                 // reports: a later report must not be overtaken by what it has outdated.
@@ -321,7 +379,7 @@ impl Mailbox {
                     .callback(move |reply| {
                         if let Ok(sample) = reply.into_result() {
                             let payload = sample.payload().clone();
-                            agents.deliver(Arrival::AllObserved(executor.clone(), payload));
+                            agents.deliver(Arrival::AllObserved(told.clone(), payload));
                             let _ = answered.send(());
                         }
                     })

@@ -7,6 +7,7 @@ use tokio::runtime::Handle;
 use zenoh::bytes::ZBytes;
 use zenoh::query::Query;
 
+use crate::keys::Keys;
 use crate::wire::{self, WireError};
 
 /// A query, and the key under which it is answered.
@@ -17,6 +18,8 @@ pub struct Question {
     query: Query,
     /// Ours, not the query's: that one may have wildcards.
     key: Arc<str>,
+    /// Who asks, where the key says so.
+    asker: Option<Arc<str>>,
     runtime: Handle,
 }
 
@@ -25,8 +28,24 @@ impl Question {
         Self {
             query,
             key,
+            asker: None,
             runtime: runtime.clone(),
         }
+    }
+
+    /// One of somebody whom the query's key names at its end. `None` if it names nobody.
+    pub(crate) fn signed(query: Query, runtime: &Handle) -> Option<Self> {
+        let key: Arc<str> = Arc::from(query.key_expr().as_str());
+        let asker = Some(Arc::from(Keys::read_last(&key)?));
+        Some(Self {
+            asker,
+            ..Self::new(query, runtime, key)
+        })
+    }
+
+    /// Who asks, where the key says so.
+    pub(crate) fn asker(&self) -> Option<&Arc<str>> {
+        self.asker.as_ref()
     }
 
     /// What came with it, unless that is too much.
@@ -62,6 +81,7 @@ impl Question {
             query,
             key,
             runtime,
+            asker: _,
         } = self;
         runtime.spawn(async move {
             if let Err(error) = query.reply(&*key, text).await {

@@ -28,6 +28,9 @@ pub struct Wiring {
     /// Whether it is one of a team: then what it says to nobody in particular is said to all of them, and
     /// may be lost.
     pub in_team: bool,
+    /// Whether its name stands in the keys on which it instructs and reports (`…/instruction/<name>`), where
+    /// the router can tell who may say what, and what others say to it is taken only so.
+    pub signs: bool,
     /// How much users may ask for.
     pub limits: Limits,
     /// Whether it wants to know what users and sensors say about the world.
@@ -54,6 +57,7 @@ impl Wiring {
             takes_goals: false,
             takes_own_goals: false,
             in_team: false,
+            signs: false,
             limits: Limits::default(),
             takes_facts: false,
             local_in: None,

@@ -53,7 +53,7 @@ pub fn from_agents(bytes: &[u8]) -> bool {
     understood |= wire::read::<Acknowledgement>("answer", bytes).is_ok();
     if let Ok(observed) = wire::read::<Observed>("facts", bytes) {
         understood = true;
-        let _ = observed.into_facts("child");
+        let _ = observed.into_facts();
     }
     if let Ok((agent, event)) = wire::event_from_line(bytes) {
         understood = true;

@@ -80,6 +80,7 @@ pub fn wiring(keys: &Keys, restaurant: &Restaurant, configuration: &Configuratio
         takes_goals: first == Some(&configuration.name),
         takes_own_goals: true,
         in_team: true,
+        signs: true,
         ..Wiring::new(keys, configuration.name.as_str(), configuration.epoch)
     }
 }

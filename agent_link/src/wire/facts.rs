@@ -1,7 +1,5 @@
 //! Facts that nobody was told to bring about.
 
-use std::collections::BTreeMap;
-
 use agent_core::model::{FactChange, Symbol};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -67,9 +65,6 @@ pub struct Observed {
     /// Who has them in a report already.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reported_to: Option<String>,
-    /// Facts that are for one superior alone, by its name.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    alone: BTreeMap<String, Vec<Text<FactChange>>>,
 }
 
 impl Observed {
@@ -81,22 +76,12 @@ impl Observed {
             seq,
             facts: changes_to_text(facts),
             reported_to: reported_to.map(ToString::to_string),
-            alone: BTreeMap::new(),
         }
     }
 
-    /// And facts for that superior alone.
-    #[must_use]
-    pub fn with_alone(mut self, to: &Symbol, facts: &[FactChange]) -> Self {
-        self.alone.insert(to.to_string(), changes_to_text(facts));
-        self
-    }
-
-    /// As the core has them: those for all, then those for `own` alone.
-    pub fn into_facts(mut self, own: &str) -> Vec<FactChange> {
-        let mut facts = from_text(self.facts);
-        facts.extend(self.alone.remove(own).into_iter().flat_map(from_text));
-        facts
+    /// As the core has them.
+    pub fn into_facts(self) -> Vec<FactChange> {
+        from_text(self.facts)
     }
 }
 

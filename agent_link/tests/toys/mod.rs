@@ -112,6 +112,16 @@ impl Toy {
         self
     }
 
+    /// Tells that superior alone.
+    pub fn showing(mut self, to: &str, facts: Vec<FactChange>) -> Self {
+        self.outputs.push_back(Output::Seen {
+            to: to.into(),
+            facts,
+            reported: false,
+        });
+        self
+    }
+
     pub fn telling(mut self, facts: Vec<FactChange>) -> Self {
         let event = Event {
             at: Time::ZERO,

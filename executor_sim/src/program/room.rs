@@ -70,6 +70,7 @@ async fn drive_room(room: Room, memory: Memory, args: &RoomArgs) -> Result<(), R
 pub fn wiring(keys: &Keys, epoch: u64) -> Wiring {
     Wiring {
         takes_facts: true,
+        signs: true,
         ..Wiring::new(keys, ROOM, epoch)
     }
 }
