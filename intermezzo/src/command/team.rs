@@ -14,6 +14,7 @@ use crate::cli::UpArgs;
 use crate::exit::{Exit, Failure};
 use crate::robot::{Robot, Setup};
 use crate::scenario::Player;
+use crate::security;
 use crate::show::{Ending, ForTeam, JsonLines, Programme, show};
 use crate::style::{BOLD, DIM};
 
@@ -33,6 +34,11 @@ pub(super) async fn run(
     if args.start != crate::cli::USUAL_START {
         let what = "--start: in a restaurant room.toml says where each vehicle stands at first";
         return Err(Failure::bad_input(what));
+    }
+    if let Some(folder) = &args.security {
+        let vehicles = restaurant.room().vehicles.keys();
+        let vehicles = vehicles.map(ToString::to_string).collect();
+        security::check_team(folder, &vehicles, &args.place)?;
     }
     let setup = Setup {
         vehicles: restaurant.room().vehicles.keys().cloned().collect(),

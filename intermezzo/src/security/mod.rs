@@ -4,11 +4,17 @@
 pub(crate) mod certificates;
 pub(crate) mod folder;
 pub(crate) mod passwords;
+pub(crate) mod team;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+
+use crate::exit::Failure;
 
 /// Whom the ready configurations know. The router is known by what it proves, too.
 pub(crate) const ROUTER: &str = "router";
+/// The router's configuration, with the rules.
+pub(crate) const ROUTER_FILE: &str = "router.json5";
 pub(crate) const OPERATOR: &str = "operator";
 pub(crate) const VIEWER: &str = "viewer";
 /// `intermezzo up` on a router elsewhere.
@@ -19,10 +25,16 @@ pub(crate) struct Ready {
     pub(crate) router: &'static str,
     /// Of each client, by name.
     pub(crate) clients: [(&'static str, &'static str); 7],
+    /// Of the room of a team.
+    pub(crate) room: &'static str,
+    /// Of one of its vehicles, with [`team::PLACE`] for its name.
+    pub(crate) vehicle: &'static str,
+    /// What the router's rules call how somebody is known.
+    pub(crate) kind: &'static str,
 }
 
 macro_rules! ready {
-    ($way:literal) => {
+    ($way:literal, $kind:literal) => {
         Ready {
             router: include_str!(concat!("../../../security/", $way, "/router.json5")),
             clients: [
@@ -55,17 +67,37 @@ macro_rules! ready {
                     include_str!(concat!("../../../security/", $way, "/world.json5")),
                 ),
             ],
+            room: include_str!(concat!("../../../security/", $way, "/room.json5")),
+            vehicle: include_str!(concat!("../../../security/", $way, "/vehicle.json5")),
+            kind: $kind,
         }
     };
 }
 
 /// Everybody has a certificate.
-pub(crate) const TLS: Ready = ready!("tls");
+pub(crate) const TLS: Ready = ready!("tls", "cert_common_names");
 
 /// Everybody has a password.
-pub(crate) const PASSWORDS: Ready = ready!("passwords");
+pub(crate) const PASSWORDS: Ready = ready!("passwords", "usernames");
 
 impl Ready {
+    /// The configurations of all clients by name: of the robot's, and of a room and these vehicles if
+    /// there are any.
+    pub(crate) fn everybody(&self, vehicles: &BTreeSet<String>) -> Vec<(String, String)> {
+        let clients = self.clients.iter();
+        let clients = clients.map(|(name, text)| ((*name).to_owned(), (*text).to_owned()));
+        let room = (executor_sim::ROOM.to_owned(), self.room.to_owned());
+        let room = (!vehicles.is_empty()).then_some(room);
+        let vehicles = vehicles.iter();
+        let vehicles = vehicles.map(|name| (name.clone(), self.of_vehicle(name)));
+        clients.chain(room).chain(vehicles).collect()
+    }
+
+    /// For the vehicle of this name.
+    pub(crate) fn of_vehicle(&self, name: &str) -> String {
+        self.vehicle.replace(team::PLACE, name)
+    }
+
     /// For somebody who is `like` one of those that are known.
     pub(crate) fn of_another(&self, name: &str, like: &str) -> Option<String> {
         let (_, text) = self.clients.iter().find(|(known, _)| *known == like)?;
@@ -86,6 +118,59 @@ pub(crate) fn usual_user(folder: &Path) -> &'static str {
     } else {
         VIEWER
     }
+}
+
+/// Whether a room and these vehicles can prove who they are with what is in that folder, and the rules
+/// there, if it has any, are for them. `place`: how the restaurant was typed.
+///
+/// # Errors
+/// If not: who is missing, and what to type.
+pub(crate) fn check_team(
+    folder: &Path,
+    vehicles: &BTreeSet<String>,
+    place: &Path,
+) -> Result<(), Failure> {
+    let (dir, place) = (folder.display(), place.display());
+    let command = match folder.join(passwords::LIST).exists() {
+        true => "passwords",
+        false => "certs",
+    };
+    let anew =
+        format!("`intermezzo {command} {dir} {place} --force` makes everything anew for this team");
+    let missing = |name: &&str| !configuration_of(folder, name).exists();
+    let names = vehicles.iter().map(String::as_str);
+    if let Some(name) = std::iter::once(executor_sim::ROOM)
+        .chain(names)
+        .find(missing)
+    {
+        let what = format!("{dir} has nothing for `{name}`");
+        let failure = Failure::bad_input(what);
+        return Err(match name {
+            executor_sim::ROOM => failure.advice(anew),
+            vehicle => failure.advice(format_args!(
+                "`intermezzo {command} {dir} --vehicle {vehicle}` lets one vehicle more in; {anew}"
+            )),
+        });
+    }
+    let router = folder.join(ROUTER_FILE);
+    // Where the router is elsewhere, its rules are, too; and whoever has written their own knows better.
+    let Ok(text) = std::fs::read_to_string(&router) else {
+        return Ok(());
+    };
+    let Ok(known) = team::vehicles(&text) else {
+        return Ok(());
+    };
+    let unknown = vehicles.difference(&known).next();
+    let what = match unknown {
+        Some(name) => format!("the rules in {} do not know `{name}`", router.display()),
+        None if known.first() == vehicles.first() => return Ok(()),
+        None => format!(
+            "by the rules in {} goals for whoever can do them are taken by {}, which is none of this team",
+            router.display(),
+            known.first().map_or("nobody", String::as_str),
+        ),
+    };
+    Err(Failure::bad_input(what).advice(anew))
 }
 
 #[cfg(test)]
@@ -126,12 +211,12 @@ mod tests {
                 .collect()
         };
         let known: Vec<(String, String)> = TLS
-            .clients
-            .iter()
-            .map(|(name, _)| ((*name).to_owned(), (*name).to_owned()))
+            .everybody(&team::of_the_paper())
+            .into_iter()
+            .map(|(name, _)| (name.clone(), name))
             .collect();
-        assert_eq!(names(&tls, "cert_common_names"), known);
-        assert_eq!(names(&passwords, "usernames"), known);
+        assert_eq!(names(&tls, TLS.kind), known);
+        assert_eq!(names(&passwords, PASSWORDS.kind), known);
     }
 
     #[test]
@@ -147,8 +232,10 @@ mod tests {
                     assert!(key.as_str().unwrap().starts_with("intermezzo/"), "{rule}");
                 }
             }
-            for (name, text) in [(ROUTER, ready.router)].iter().chain(&ready.clients) {
-                let config = read(text);
+            let router = (ROUTER.to_owned(), ready.router.to_owned());
+            let everybody = ready.everybody(&team::of_the_paper()).into_iter();
+            for (name, text) in std::iter::once(router).chain(everybody) {
+                let config = read(&text);
                 for key in [
                     "scouting/multicast/enabled",
                     "scouting/gossip/enabled",
@@ -177,9 +264,19 @@ mod tests {
     }
 
     #[test]
+    fn the_ready_rules_of_a_team_are_those_that_are_written_for_the_built_in_restaurant() {
+        for ready in [TLS, PASSWORDS] {
+            let vehicles = team::of_the_paper();
+            let written = team::with_vehicles(ready.router, ready.kind, &vehicles).unwrap();
+            assert_eq!(written, ready.router);
+            assert_eq!(team::vehicles(ready.router), Ok(vehicles));
+        }
+    }
+
+    #[test]
     fn no_ready_configuration_has_a_secret_in_it() {
-        for (name, text) in PASSWORDS.clients {
-            let user = get(&read(text), "transport/auth/usrpwd");
+        for (name, text) in PASSWORDS.everybody(&team::of_the_paper()) {
+            let user = get(&read(&text), "transport/auth/usrpwd");
             assert_eq!(user["user"], name);
             assert_eq!(user["password"], passwords::PLACE);
         }

@@ -2,6 +2,8 @@
 //! zenoh, and what arrives is what is meant to.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod team;
+
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
@@ -16,15 +18,36 @@ use zenoh::query::{ConsolidationMode, QueryTarget};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
-const EVERYBODY: [&str; 7] = [
-    "operator",
-    "viewer",
-    "supervisor",
-    "parent",
-    "child",
-    "executor",
-    "world",
-];
+/// What may be said: the key, who may say it, and whom that reaches.
+type Row = (
+    &'static str,
+    &'static [&'static str],
+    &'static [&'static str],
+);
+
+/// Who can say what to whom.
+struct Table {
+    everybody: &'static [&'static str],
+    /// What is asked.
+    questions: &'static [Row],
+    /// What is put.
+    puts: &'static [Row],
+}
+
+/// One robot.
+const ROBOT: Table = Table {
+    everybody: &[
+        "operator",
+        "viewer",
+        "supervisor",
+        "parent",
+        "child",
+        "executor",
+        "world",
+    ],
+    questions: &QUESTIONS,
+    puts: &PUTS,
+};
 
 /// Who may ask a robot for something.
 const ASK: &[&str] = &["operator", "supervisor"];
@@ -32,8 +55,8 @@ const ASK: &[&str] = &["operator", "supervisor"];
 /// Who may look at it.
 const LOOK: &[&str] = &["operator", "viewer", "supervisor"];
 
-/// What may be asked: the key, who may ask, and whom that reaches.
-const QUESTIONS: [(&str, &[&str], &[&str]); 30] = [
+/// What may be asked of a robot.
+const QUESTIONS: [Row; 30] = [
     ("goal/normal", ASK, &["parent"]),
     ("goal/normal/operator", &["operator"], &["parent"]),
     ("goal/normal/viewer", &[], &[]),
@@ -82,7 +105,7 @@ const QUESTIONS: [(&str, &[&str], &[&str]); 30] = [
 ];
 
 /// The same for what is put.
-const PUTS: [(&str, &[&str], &[&str]); 21] = [
+const PUTS: [Row; 21] = [
     ("goal/normal", ASK, &["parent"]),
     ("goal/normal/operator", &["operator"], &["parent"]),
     ("goal/normal/viewer", &[], &[]),
@@ -109,20 +132,27 @@ const PUTS: [(&str, &[&str], &[&str]); 21] = [
 /// What arrived: how it was said, on which key, by whom, and who heard it.
 type Heard = BTreeSet<(&'static str, String, String, String)>;
 
-/// What is meant to arrive.
-fn intended() -> Heard {
-    let mut heard = Heard::new();
-    for (how, table) in [("ask", QUESTIONS.as_slice()), ("put", PUTS.as_slice())] {
-        for (key, senders, receivers) in table {
-            for sender in *senders {
-                for receiver in *receivers {
-                    let [key, sender, receiver] = [key, sender, receiver].map(|s| (*s).to_owned());
-                    heard.insert((how, key, sender, receiver));
+impl Table {
+    fn all(&self) -> [(&'static str, &'static [Row]); 2] {
+        [("ask", self.questions), ("put", self.puts)]
+    }
+
+    /// What is meant to arrive.
+    fn intended(&self) -> Heard {
+        let mut heard = Heard::new();
+        for (how, table) in self.all() {
+            for (key, senders, receivers) in table {
+                for sender in *senders {
+                    for receiver in receivers.iter().filter(|receiver| *receiver != sender) {
+                        let [key, sender, receiver] =
+                            [key, sender, receiver].map(|s| (*s).to_owned());
+                        heard.insert((how, key, sender, receiver));
+                    }
                 }
             }
         }
+        heard
     }
-    heard
 }
 
 fn make(way: &str, folder: &Path) {
@@ -134,8 +164,8 @@ fn make(way: &str, folder: &Path) {
 }
 
 /// Listens to everything, and answers whatever is asked.
-async fn listen(session: &Session, own: &'static str, heard: &Arc<Mutex<Heard>>) {
-    for (how, table) in [("ask", QUESTIONS.as_slice()), ("put", PUTS.as_slice())] {
+async fn listen(session: &Session, own: &'static str, table: &Table, heard: &Arc<Mutex<Heard>>) {
+    for (how, table) in table.all() {
         for (key, _, _) in table {
             let full = format!("intermezzo/r/{key}");
             let heard = heard.clone();
@@ -163,13 +193,13 @@ async fn listen(session: &Session, own: &'static str, heard: &Arc<Mutex<Heard>>)
 }
 
 /// Says everything, once.
-async fn say_everything(session: &Session, own: &str) {
-    for (key, _, _) in PUTS {
+async fn say_everything(session: &Session, own: &str, table: &Table) {
+    for (key, _, _) in table.puts {
         let put = session.put(format!("intermezzo/r/{key}"), own);
         put.await.unwrap();
     }
     let mut answers = Vec::new();
-    for (key, _, _) in QUESTIONS {
+    for (key, _, _) in table.questions {
         let asked = session
             .get(format!("intermezzo/r/{key}"))
             .payload(own)
@@ -184,7 +214,7 @@ async fn say_everything(session: &Session, own: &str) {
     }
 }
 
-async fn everybody_tries_everything(way: &str) {
+async fn everybody_tries_everything(way: &str, table: &Table) {
     let keys = TempDir::new().unwrap();
     make(way, keys.path());
     let file = |name: &str| keys.path().join(format!("{name}.json5"));
@@ -193,18 +223,18 @@ async fn everybody_tries_everything(way: &str) {
     let connect = session::endpoints(&router).await;
     let heard = Arc::new(Mutex::new(Heard::new()));
     let mut sessions = Vec::new();
-    for name in EVERYBODY {
+    for name in table.everybody {
         let connect = connect.clone();
         let client = Role::Client { connect };
         let session = session::open(&client, Some(&file(name))).await.unwrap();
-        listen(&session, name, &heard).await;
+        listen(&session, name, table, &heard).await;
         sessions.push((name, session));
     }
-    let intended = intended();
+    let intended = table.intended();
     let arrives = async {
         loop {
             for (name, session) in &sessions {
-                say_everything(session, name).await;
+                say_everything(session, name, table).await;
             }
             if heard.lock().unwrap().is_superset(&intended) {
                 return;
@@ -216,7 +246,7 @@ async fn everybody_tries_everything(way: &str) {
     let arrived = timeout(PATIENCE, arrives).await;
     // Once more, now that everybody knows of everybody.
     for (name, session) in &sessions {
-        say_everything(session, name).await;
+        say_everything(session, name, table).await;
     }
     let heard = heard.lock().unwrap().clone();
     let missing: Vec<_> = intended.difference(&heard).collect();
@@ -231,12 +261,12 @@ async fn everybody_tries_everything(way: &str) {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 4)]
 async fn with_certificates_only_what_is_permitted_arrives() {
-    everybody_tries_everything("certs").await;
+    everybody_tries_everything("certs", &ROBOT).await;
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 4)]
 async fn with_passwords_only_what_is_permitted_arrives() {
-    everybody_tries_everything("passwords").await;
+    everybody_tries_everything("passwords", &ROBOT).await;
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 4)]

@@ -11,7 +11,7 @@ use tokio::time::timeout;
 use crate::harness::{PATIENCE, Said, User};
 
 /// What somebody is told whom nobody answers.
-fn assert_told_nothing(said: &Said) {
+pub fn assert_told_nothing(said: &Said) {
     assert_eq!(said.code, Some(3), "{said:?}");
     let words = "no answer: not reachable or not permitted";
     assert!(said.err.contains(words), "{said:?}");

@@ -8,6 +8,7 @@ mod ending;
 mod evening;
 mod goals;
 mod locked;
+mod locked_team;
 mod measuring;
 mod refusals;
 mod restart;

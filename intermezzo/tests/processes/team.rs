@@ -9,7 +9,7 @@ use tempfile::TempDir;
 use crate::harness::{Up, User};
 
 /// The restaurant of the paper with a second carrier.
-fn restaurant() -> TempDir {
+pub fn restaurant() -> TempDir {
     let dir = TempDir::new().unwrap();
     let second = "\n[vehicle.k4]\nstart = \"kitchen\"\ncan = [\"carry\"]\n\
         parts = [\"base\", \"arm\", \"tray\", \"eyes\", \"voice\"]\n";
@@ -31,7 +31,7 @@ async fn until_vehicle(up: &mut Up, what: &str, wanted: impl Fn(&Value) -> bool)
         .await
 }
 
-async fn until_done(up: &mut Up, goals: &[&str]) {
+pub async fn until_done(up: &mut Up, goals: &[&str]) {
     for goal in goals {
         let done = |told: &Value| told["goal"] == *goal && told["event"] == "goal_succeeded";
         if !up.story.iter().any(done) {
@@ -41,8 +41,8 @@ async fn until_done(up: &mut Up, goals: &[&str]) {
 }
 
 /// What was handed over in reality: guest by guest.
-async fn served(user: &User) -> Vec<String> {
-    let said = user.ok(&["status", "--json"]).await;
+pub async fn served(user: &User, who: &[&str]) -> Vec<String> {
+    let said = user.ok(&[&["status", "--json"], who].concat()).await;
     let status: Value = serde_json::from_str(&said.out).unwrap();
     let done = status["agents"]["room"]["status"]["done"]
         .as_array()
@@ -99,7 +99,7 @@ async fn a_carrier_is_killed_with_a_drink_on_it_and_every_guest_is_served_once()
             .filter(|told| told["event"] == "task_given" && told["what"] == *task);
         assert!(given.next().is_some(), "{task}");
     }
-    let mut guests = served(&user).await;
+    let mut guests = served(&user, &[]).await;
     guests.sort();
     assert_eq!(guests, ["ann", "ben"]);
     let status = up.end_by(Signal::SIGINT).await;
