@@ -36,6 +36,36 @@ async fn when_up_is_killed_its_roles_end_by_themselves() {
     assert_eq!(said.code, Some(3), "{said:?}");
 }
 
+/// The temporary directories of the user's robots.
+fn temporary(user: &User) -> Vec<String> {
+    let files = std::fs::read_dir(user.path()).unwrap();
+    let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
+    names
+        .filter(|name| name.starts_with("intermezzo-"))
+        .collect()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn what_a_killed_up_has_left_behind_is_removed_by_the_next() {
+    let user = User::new().await;
+    let mut killed = user.up(&[]).await;
+    let left = temporary(&user);
+    assert_eq!(left.len(), 1, "{left:?}");
+    // Not while anybody uses it.
+    let mut other = user.up(&["--robot", "other"]).await;
+    let both = temporary(&user);
+    assert!(both.len() == 2 && both.contains(&left[0]), "{both:?}");
+    killed.end_by(Signal::SIGKILL).await;
+    killed.assert_nobody_is_left().await;
+    assert_eq!(other.end_by(Signal::SIGINT).await.code(), Some(0));
+    assert_eq!(temporary(&user), left);
+    let mut next = user.up(&[]).await;
+    let new = temporary(&user);
+    assert!(new.len() == 1 && new != left, "{new:?}");
+    assert_eq!(next.end_by(Signal::SIGINT).await.code(), Some(0));
+    assert_eq!(temporary(&user), [""; 0]);
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn a_story_with_a_goal_that_cannot_be_ends_with_a_failure() {
     let user = User::new().await;
