@@ -213,6 +213,90 @@ fn what_one_vehicle_sees_break_stops_another_that_cannot_see_it() {
     assert_eq!(served(&team), [("k3".into(), "ann".into())]);
 }
 
+/// Whether that vehicle has begun, or ended, an action of that name.
+fn does(event: &(Symbol, Event), vehicle: &str, name: &str, ends: bool) -> bool {
+    event.0 == vehicle
+        && match &event.1.what {
+            Happening::ActionStarted { action, .. } => !ends && action.name == name,
+            Happening::ActionFinished { action, .. } => ends && action.name == name,
+            _ => false,
+        }
+}
+
+fn stands(team: &Restaurateurs, bottle: &str, place: &str) -> bool {
+    let node = place.into();
+    let bottle = team.room().things().bottle(bottle);
+    bottle.map(|it| &it.spot) == Some(&Spot::Proper { node })
+}
+
+#[test]
+fn an_empty_that_was_set_down_in_haste_is_cleared_all_the_same() {
+    let restaurant = Restaurant::of_the_paper();
+    let mut team = team(&restaurant);
+    team.change(vec![
+        add("stands", &["cola1", "table3"]),
+        add("used", &["cola1"]),
+    ]);
+    team.run_until(at(3.0));
+    team.tell("k3", Input::Observation(vec![add("spill", &["table1"])]));
+    ask(&mut team, "clear", Atom::new("clear", ["table3"]));
+    let mut events = Vec::new();
+    // Nobody knows of the bottle until k3 comes by.
+    let come_by = Atom::new("clean", ["table3"]);
+    ask(&mut team, "come-by", come_by);
+    let begun = |event: &(Symbol, Event)| does(event, "k3", "collect", false);
+    run_until(&mut team, &mut events, at(600.0), begun);
+    let later = team.now() + at(10.0);
+    team.run_until(later);
+    let request = GoalRequest {
+        id: Some("spill".into()),
+        tasks: vec![Atom::new("clean", ["table1"])],
+        urgency: Urgency::Emergency,
+        priority: 0,
+        deadline: None,
+    };
+    team.tell("k3", Input::Goal(request));
+    let later = team.now() + at(600.0);
+    team.run_until(later);
+    events.extend(team.take_events());
+    assert!(stands(&team, "cola1", "kitchen"), "{}", told(&events));
+}
+
+#[test]
+fn what_is_aboard_and_nobody_waits_for_goes_back_to_the_counter() {
+    let restaurant = Restaurant::of_the_paper();
+    // In the hand, on the tray, half grasped.
+    for (action, ends) in [("grasp", true), ("put-on-tray", true), ("grasp", false)] {
+        let mut team = team(&restaurant);
+        team.run_until(at(3.0));
+        team.change(vec![add("seated", &["eva", "table3"])]);
+        ask(&mut team, "order", Atom::new("serve", ["water", "eva"]));
+        let mut events = Vec::new();
+        let done = |event: &(Symbol, Event)| does(event, "k3", action, ends);
+        run_until(&mut team, &mut events, at(600.0), done);
+        let later = team.now() + at(1.0);
+        team.run_until(later);
+        let emergency = GoalRequest {
+            id: Some("spill".into()),
+            tasks: vec![Atom::new("clean", ["table1"])],
+            urgency: Urgency::Emergency,
+            priority: 0,
+            deadline: None,
+        };
+        team.tell("k3", Input::Goal(emergency));
+        let later = team.now() + at(20.0);
+        team.run_until(later);
+        // Nobody at the table sees it; k1 does, at the door.
+        team.change(vec![add("gone", &["eva"])]);
+        let later = team.now() + at(600.0);
+        team.run_until(later);
+        events.extend(team.take_events());
+        let bottles = ["water1", "water2"];
+        let put_away = bottles.iter().all(|it| stands(&team, it, "kitchen"));
+        assert!(put_away, "{action}: {}", told(&events));
+    }
+}
+
 #[test]
 fn when_the_one_who_carries_dies_its_task_goes_to_another_and_the_drink_it_held_is_told() {
     let restaurant = restaurant();

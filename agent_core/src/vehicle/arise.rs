@@ -1,7 +1,9 @@
 //! Tasks that come up by themselves, and facts that have to be found out.
 
+use std::collections::BTreeSet;
+
 use super::{Mind, Vehicle};
-use crate::model::{Fact, Symbol, Task, Time};
+use crate::model::{Domain, ExecutionModel, Fact, Symbol, Task, Time};
 use crate::planner::{Arisen, Planner, arising};
 use crate::protocol::Urgency;
 use crate::service::{NewTask, Stage, TaskId};
@@ -11,14 +13,14 @@ const LOOK_AGAIN: Time = Time(60_000_000);
 
 impl<A: Mind, P: Planner> Vehicle<A, P> {
     /// The belief has changed: publishes what has come up by that. Only what this vehicle has seen or
-    /// brought about itself: of what it was told, the one who has told it has seen to that.
+    /// brought about itself: of what it was told, the one who has told it has seen to that, unless it is
+    /// about this one's own body, too, which nobody else knows of.
     pub(super) fn look_what_has_come_up(&mut self) {
         let now = arising(&self.problem());
         let before = std::mem::replace(&mut self.arisen, now);
-        if self.learning {
-            return;
-        }
-        let new: Vec<Arisen> = self.arisen.difference(&before).cloned().collect();
+        let new = self.arisen.difference(&before);
+        let new = new.filter(|it| !self.learning || self.own_rules.contains(&it.rule));
+        let new: Vec<Arisen> = new.cloned().collect();
         for arisen in new {
             let own = self.tasks.published().values();
             let mut own = own.map(|published| &published.new.what);
@@ -103,4 +105,21 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
         };
         self.publish(Some(words.join("-").into()), new);
     }
+}
+
+/// The rules for tasks that come up in which there is something about a vehicle's own body: facts that
+/// change and are not shared.
+pub(super) fn own_rules(domain: &Domain, model: &ExecutionModel) -> BTreeSet<usize> {
+    let effects = domain.operators.values().map(|operator| &operator.effect);
+    let changes = effects.flat_map(|effect| effect.add.iter().chain(&effect.remove));
+    let changing: BTreeSet<&Symbol> = changes.map(|change| &change.fact.name).collect();
+    let is_own = |name: &Symbol| changing.contains(name) && !model.shared.contains(name);
+    let rules = model.arising.iter().enumerate().filter(|(_, rule)| {
+        let mut own = false;
+        for clause in &rule.when {
+            clause.each_pattern(&mut |pattern| own |= is_own(&pattern.name));
+        }
+        own
+    });
+    rules.map(|(place, _)| place).collect()
 }

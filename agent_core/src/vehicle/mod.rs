@@ -65,6 +65,8 @@ pub struct Vehicle<A, P> {
     /// What was to be done by the rules for what comes up, when that was looked at last.
     arisen: BTreeSet<Arisen>,
     /// Tasks that were published since a user wants them done.
+    /// Rules for what comes up that no other vehicle could see to: they are about the own body, too.
+    own_rules: BTreeSet<usize>,
     for_users: BTreeSet<TaskId>,
     ended: VecDeque<EndedTask>,
     /// When a task that finds out something was begun last.
@@ -107,6 +109,7 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
             for_users: BTreeSet::new(),
             ended: VecDeque::new(),
             found_out: BTreeMap::new(),
+            own_rules: BTreeSet::new(),
             now: Time::ZERO,
             learning: false,
             believes_otherwise: false,
@@ -117,6 +120,7 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
         vehicle
     }
 
+        vehicle.own_rules = arise::own_rules(&vehicle.domain, &vehicle.model);
     /// Its name.
     pub fn name(&self) -> &Symbol {
         &self.name
