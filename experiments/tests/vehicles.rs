@@ -409,3 +409,51 @@ fn a_vehicle_that_is_started_again_gives_back_what_it_had_and_everything_is_done
         assert_eq!(team.room().check(), Ok(()));
     }
 }
+
+#[test]
+fn a_task_that_cannot_be_gone_on_with_is_given_back_and_done_by_one_who_can() {
+    let restaurant = restaurant();
+    let mut team = team(&restaurant);
+    team.run_until(at(3.0));
+    team.change(vec![add("seated", &["ann", "table1"])]);
+    ask(&mut team, "order", Atom::new("serve", ["cola", "ann"]));
+    let mut events = Vec::new();
+    let stowed = |event: &(Symbol, Event)| {
+        does(event, "k3", "put-on-tray", true) || does(event, "k4", "put-on-tray", true)
+    };
+    run_until(&mut team, &mut events, at(600.0), stowed);
+    let has_it = |team: &Restaurateurs, vehicle: &str| {
+        let mut bottles = team.room().things().bottles();
+        bottles.any(
+            |(_, it)| matches!(&it.spot, Spot::Slot { vehicle: whose, .. } if *whose == vehicle),
+        )
+    };
+    let (first, other) = match has_it(&team, "k3") {
+        true => ("k3", "k4"),
+        false => ("k4", "k3"),
+    };
+    let mut dead = team.kill(first).expect("it lives");
+    let rows = dead.write_down().into_iter();
+    let rows: Rows = rows.filter_map(|row| Some((row.key, row.value?))).collect();
+    // The other one gets the task, and somebody takes the last bottle before its eyes.
+    let given = |(_, event): &(Symbol, Event)| matches!(&event.what, Happening::TaskGiven { to, .. } if to == other);
+    run_until(&mut team, &mut events, at(900.0), given);
+    for bottle in ["cola1", "cola2"] {
+        let gone = FactChange::Remove(fact("stands", &[bottle, "kitchen"]));
+        team.change(vec![gone]);
+    }
+    let later = team.now() + at(30.0);
+    team.run_until(later);
+    let mut again = make(&restaurant, first, 2);
+    again.recall(&rows).expect("it was written so");
+    team.restart(first, again, true);
+    run_until(&mut team, &mut events, at(1500.0), |(_, event)| {
+        event.goal == Some("order".into()) && event.what == Happening::GoalSucceeded
+    });
+    assert_eq!(
+        served(&team),
+        [(first.into(), "ann".into())],
+        "{}",
+        told(&events)
+    );
+}

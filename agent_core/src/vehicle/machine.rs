@@ -82,6 +82,7 @@ impl<A: Mind, P: Planner> Machine for Vehicle<A, P> {
         self.assessments.keep_only(|id| tasks.is_offered(id));
         self.assess();
         self.withdraw_what_is_over();
+        self.give_back_what_is_stuck();
         let needs = self.needs();
         self.states.need(needs);
         self.come_to_rest();
@@ -100,6 +101,7 @@ impl<A: Mind, P: Planner> Machine for Vehicle<A, P> {
             self.mind.wake_at(),
             self.tasks.wake_at(),
             self.states.wake_at(),
+            self.stuck_until(),
         ];
         parts.into_iter().flatten().min()
     }

@@ -20,6 +20,9 @@ pub trait Mind: Durable<In = Infallible, Out = Infallible> {
     /// The facts that its goals wait for.
     fn wanted(&self) -> BTreeSet<Fact>;
 
+    /// Whether that goal of its waits for a fact to change, as there is no plan for it.
+    fn is_blocked(&self, goal: &GoalId) -> bool;
+
     /// Whether it has a goal of that name that is not over.
     fn pursues(&self, goal: &GoalId) -> bool {
         self.intentions().iter().any(|it| it.goal.id == *goal)
@@ -36,6 +39,13 @@ impl<P: Planner> Mind for Agent<P> {
         let aside = self.aside().goals().iter().map(|(intention, _)| intention);
         let all = self.running().into_iter().chain(stacked).chain(aside);
         all.chain(self.waiting().intentions()).collect()
+    }
+
+    fn is_blocked(&self, goal: &GoalId) -> bool {
+        let mut aside = self.aside().goals().iter();
+        aside.any(|(intention, waits_for)| {
+            intention.goal.id == *goal && matches!(waits_for, WaitsFor::Facts(_))
+        })
     }
 
     fn wanted(&self) -> BTreeSet<Fact> {
@@ -55,6 +65,10 @@ impl<P: Planner + Clone> Mind for ParallelAgent<P> {
 
     fn intentions(&self) -> Vec<&Intention> {
         ParallelAgent::intentions(self).collect()
+    }
+
+    fn is_blocked(&self, goal: &GoalId) -> bool {
+        self.agents().any(|agent| Mind::is_blocked(agent, goal))
     }
 
     fn wanted(&self) -> BTreeSet<Fact> {

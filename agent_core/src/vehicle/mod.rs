@@ -12,6 +12,7 @@ mod machine;
 mod memory;
 mod mind;
 mod state;
+mod stuck;
 mod tasks;
 
 pub use mind::Mind;
@@ -22,7 +23,7 @@ use std::sync::Arc;
 use crate::agent::Configuration;
 use crate::model::{Domain, ExecutionModel, Fact, Map, Pattern, Symbol, Task, Time};
 use crate::planner::{Arisen, Planner, Problem};
-use crate::protocol::{Event, GoalId, Happening, Ledger, Output};
+use crate::protocol::{ActionId, Event, GoalId, Happening, Ledger, Output};
 use crate::service::{Message, Outcome, StateService, TaskId, TaskService, Times};
 use assess::Assessments;
 
@@ -64,11 +65,13 @@ pub struct Vehicle<A, P> {
     equipment: Equipment,
     /// What was to be done by the rules for what comes up, when that was looked at last.
     arisen: BTreeSet<Arisen>,
-    /// Tasks that were published since a user wants them done.
     /// Rules for what comes up that no other vehicle could see to: they are about the own body, too.
     own_rules: BTreeSet<usize>,
+    /// Tasks that were published since a user wants them done.
     for_users: BTreeSet<TaskId>,
     ended: VecDeque<EndedTask>,
+    /// Tasks that were given to us and that we cannot go on with, and since when.
+    stuck: BTreeMap<ActionId, Time>,
     /// When a task that finds out something was begun last.
     found_out: BTreeMap<Task, Time>,
     now: Time,
@@ -106,21 +109,22 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
             map: Arc::new(map),
             equipment,
             arisen: BTreeSet::new(),
+            own_rules: BTreeSet::new(),
             for_users: BTreeSet::new(),
             ended: VecDeque::new(),
+            stuck: BTreeMap::new(),
             found_out: BTreeMap::new(),
-            own_rules: BTreeSet::new(),
             now: Time::ZERO,
             learning: false,
             believes_otherwise: false,
             outputs: VecDeque::new(),
             ledger: Ledger::default(),
         };
+        vehicle.own_rules = arise::own_rules(&vehicle.domain, &vehicle.model);
         vehicle.arisen = crate::planner::arising(&vehicle.problem());
         vehicle
     }
 
-        vehicle.own_rules = arise::own_rules(&vehicle.domain, &vehicle.model);
     /// Its name.
     pub fn name(&self) -> &Symbol {
         &self.name

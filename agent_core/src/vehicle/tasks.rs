@@ -110,7 +110,7 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
 
     /// Ends the work on an execution, which is rolled back where the domain says how. What comes of it is
     /// reported when it stands still.
-    fn cancel(&mut self, id: &ActionId, reason: &str) {
+    pub(super) fn cancel(&mut self, id: &ActionId, reason: &str) {
         let goal = goal_of(id);
         if self.mind.pursues(&goal) {
             // It may be ending already.
@@ -211,7 +211,7 @@ impl<A: Mind, P: Planner> Vehicle<A, P> {
 }
 
 /// The goal of the agent's that an execution is.
-fn goal_of(id: &ActionId) -> GoalId {
+pub(super) fn goal_of(id: &ActionId) -> GoalId {
     id.to_string().into()
 }
 

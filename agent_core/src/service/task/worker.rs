@@ -113,6 +113,14 @@ impl TaskService {
         self.taken.insert(id.clone(), taken);
     }
 
+    /// A task that was given to us is given back: it is let go of when what was begun has come to rest,
+    /// and has not failed.
+    pub fn give_up(&mut self, id: &ActionId) {
+        if let Some(taken) = self.taken.get_mut(id) {
+            taken.given_up = true;
+        }
+    }
+
     /// A task that was given to us has ended, or is forgotten here.
     pub fn let_go(&mut self, id: &ActionId) {
         self.taken.remove(id);
