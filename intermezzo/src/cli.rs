@@ -206,7 +206,7 @@ pub(crate) struct UpArgs {
     #[command(flatten)]
     pub(crate) planner: PlannerOptions,
     /// Where the roles keep their journals: the next `up` with the same goes on where this one was.
-    /// Without it, in a temporary directory that is removed at the end.
+    /// Without it, in a temporary directory that is removed at the end, or by the next one.
     #[arg(long, value_name = "DIR")]
     pub(crate) state: Option<PathBuf>,
     /// Start no world: it runs elsewhere, as motors and sensors of a real robot do.
@@ -253,6 +253,8 @@ Examples:
   intermezzo goal '(go n40)'
   intermezzo goal '(and (show n2) (show n12))' --id morning --wait
   intermezzo goal '(go n28)' --emergency --priority 5 --deadline 120
+  intermezzo goal '(serve cola ann)'                               in a restaurant: for whoever can do it
+  intermezzo goal '(clean table3)' --emergency --vehicle k3        … and for one vehicle
 
 Exit status: 0 accepted, with --wait: reached; 1 rejected or failed; 2 not a goal; 3 no robot, or with
 --wait: none for as long as --patience says.")]
@@ -311,7 +313,8 @@ pub(crate) struct CommandArgs {
 #[command(after_help = "\
 Examples:
   intermezzo fact '(not (open door3_5))'
-  intermezzo fact '(= (length arc5) 9)'")]
+  intermezzo fact '(= (length arc5) 9)'
+  intermezzo fact '(seated ann table1)'        in a restaurant")]
 pub(crate) struct FactArgs {
     /// What holds now, or `(not …)` for what no longer does.
     #[arg(value_name = "FACT")]

@@ -112,8 +112,11 @@ pub(super) async fn perform(
     Ok(exit)
 }
 
-/// What vehicles have to do already, if they go on from an earlier state. Who does not answer has nothing.
-async fn goals_of(client: &Client, vehicles: &BTreeSet<Symbol>) -> Vec<(GoalId, String)> {
+/// What vehicles have to do already. Who does not answer has nothing.
+pub(super) async fn goals_of(
+    client: &Client,
+    vehicles: &BTreeSet<Symbol>,
+) -> Vec<(GoalId, String)> {
     let mut all = Vec::new();
     for vehicle in vehicles {
         let goals = client.look(vehicle.as_str(), View::Goals).await;

@@ -5,8 +5,11 @@ use std::fs;
 use nix::sys::signal::Signal;
 use serde_json::Value;
 use tempfile::TempDir;
+use tokio::io::{AsyncBufReadExt, BufReader, Lines};
+use tokio::process::ChildStdout;
+use tokio::time::timeout;
 
-use crate::harness::{Up, User};
+use crate::harness::{PATIENCE, Up, User};
 
 /// The restaurant of the paper with a second carrier.
 pub fn restaurant() -> TempDir {
@@ -107,17 +110,33 @@ async fn a_carrier_is_killed_with_a_drink_on_it_and_every_guest_is_served_once()
     up.assert_nobody_is_left().await;
 }
 
+async fn next_line(shown: &mut Lines<BufReader<ChildStdout>>) -> String {
+    let line = timeout(PATIENCE, shown.next_line()).await;
+    let line = line.expect("something more is shown").unwrap();
+    line.expect("it goes on")
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn a_goal_can_be_for_one_vehicle_and_status_tells_of_all() {
     let user = User::new().await;
     let mut up = user
         .story(&["up", "restaurant", "--json", "--speed", "20"])
         .await;
+    let mut watching = user.start(&["watch"]);
+    let shown = watching.stdout.take().unwrap();
+    let mut shown = BufReader::new(shown).lines();
+    let heading = next_line(&mut shown).await;
+    for name in ["k1", "k2", "k3"] {
+        assert!(heading.contains(name), "{heading}");
+    }
     user.ok(&["fact", "(spill kitchen)"]).await;
     let said = user
         .ok(&["goal", "(clean kitchen)", "--vehicle", "k3", "--wait"])
         .await;
     assert!(said.out.contains("done"), "{}", said.out);
+    // Who watches sees it in the column of k3.
+    while !next_line(&mut shown).await.contains("· (wipe kitchen)") {}
+    watching.kill().await.unwrap();
     let said = user.ok(&["status"]).await;
     for name in ["room", "k1", "k2", "k3"] {
         assert!(said.out.contains(name), "{}", said.out);
