@@ -60,12 +60,15 @@ impl<P: Planner> Agent<P> {
 
     /// The executor says that the running action is done.
     pub(super) fn said_to_be_done(&mut self, mut execution: Execution, facts: &[FactChange]) {
+        let purpose = execution.step.purpose();
+        if !self.is_monitored(purpose) {
+            return self.succeeded(execution, facts);
+        }
         if let Some(reason) = self.failure_of(&execution) {
             return self.fails(execution, reason, facts, None);
         }
-        let purpose = execution.step.purpose();
         let told = self.known(facts);
-        if !self.is_monitored(purpose) || self.missing(purpose, &[&told]).is_none() {
+        if self.missing(purpose, &[&told]).is_none() {
             return self.succeeded(execution, facts);
         }
         if let Some(why) = self.contradiction(&execution, &told) {

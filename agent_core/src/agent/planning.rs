@@ -25,7 +25,8 @@ impl<P: Planner> Agent<P> {
         if let Some(running) = &mut self.running {
             running.phase = Phase::Planning;
             self.planner.release(&running.intention.goal.id);
-            self.planner.begin(problem, &stage.agendas);
+            let agendas = stage.agendas(&running.intention);
+            self.planner.begin(problem, agendas);
         }
     }
 

@@ -10,6 +10,7 @@
 //! *Another solution* is one without the action that has failed. Only when no ancestor has one is the
 //! action tried again, as often as it may be; this too from the nearest outward.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::{Agent, Intention};
@@ -30,7 +31,8 @@ pub enum Repair {
 /// What is planned for at once.
 #[derive(Clone, Debug)]
 pub(super) struct Stage {
-    pub agendas: Vec<Agenda>,
+    /// `None`: all that are left.
+    agendas: Option<Vec<Agenda>>,
     /// Whether actions count as forbidden that have failed, however seldom.
     pub strict: bool,
     /// The task that these agendas decompose anew, and how far it is above the action that has failed;
@@ -38,6 +40,23 @@ pub(super) struct Stage {
     pub anew: Option<(Task, usize)>,
     /// Whether all that is left is planned for.
     pub whole: bool,
+}
+
+impl Stage {
+    /// Everything that is left is planned for at once.
+    fn whole(strict: bool) -> Self {
+        Self {
+            agendas: None,
+            strict,
+            anew: None,
+            whole: true,
+        }
+    }
+
+    /// What is planned for.
+    pub fn agendas<'a>(&'a self, intention: &'a Intention) -> &'a [Agenda] {
+        self.agendas.as_deref().unwrap_or(&intention.agendas)
+    }
 }
 
 /// How far planning is.
@@ -52,33 +71,27 @@ pub(super) struct Reached {
 impl<P: Planner> Agent<P> {
     /// What is to be planned for, one after the other until there is a plan.
     pub(super) fn stages(&self, intention: &Intention) -> Vec<Stage> {
-        let whole = |strict| Stage {
-            agendas: intention.agendas.clone(),
-            strict,
-            anew: None,
-            whole: true,
-        };
         let policy = self.configuration.policy.repair;
         if policy == Repair::Cheapest
             || intention.failures.is_empty()
             || intention.cancelled.is_some()
         {
-            return vec![whole(false)];
+            return vec![Stage::whole(false)];
         }
         if intention.failed.is_none() {
-            return vec![whole(true), whole(false)];
+            return vec![Stage::whole(true), Stage::whole(false)];
         }
         let levels = levels(&intention.agendas);
         let stages = [true, false].into_iter().flat_map(|strict| {
             levels.iter().map(move |(anew, agendas)| Stage {
-                agendas: agendas.clone(),
+                agendas: Some(agendas.clone()),
                 strict,
                 anew: anew.clone(),
                 whole: false,
             })
         });
         // The last finds nothing more, and tells what all of them were in want of.
-        stages.chain([whole(false)]).collect()
+        stages.chain([Stage::whole(false)]).collect()
     }
 
     /// The stage that the running goal is in.
@@ -102,8 +115,8 @@ impl<P: Planner> Agent<P> {
 
     /// There is a plan: says which task it decomposes anew, if it is the answer to a failure. `same`: it
     /// is the one that was followed before. Returns why it was chosen, and whether that is new.
-    pub(super) fn repaired(&mut self, stage: &Stage, same: bool) -> (String, bool) {
-        let cheapest = ("it is the cheapest".to_owned(), !same);
+    pub(super) fn repaired(&mut self, stage: &Stage, same: bool) -> (Cow<'static, str>, bool) {
+        let cheapest = (Cow::from("it is the cheapest"), !same);
         let running = self.running.as_mut();
         let Some((failed, told)) = running.and_then(|it| it.intention.failed.as_mut()) else {
             return cheapest;
@@ -113,10 +126,10 @@ impl<P: Planner> Agent<P> {
         let Some((task, levels)) = stage.anew.clone() else {
             return match stage.whole {
                 true => cheapest,
-                false => (
-                    format!("nothing else is left, and {failed} may be tried again"),
-                    is_new,
-                ),
+                false => {
+                    let why = format!("nothing else is left, and {failed} may be tried again");
+                    (why.into(), is_new)
+                }
             };
         };
         let why = format!("{task} is the nearest task that can be done otherwise");
@@ -129,7 +142,7 @@ impl<P: Planner> Agent<P> {
             };
             self.emit(goal.as_ref(), what);
         }
-        (why, is_new)
+        (why.into(), is_new)
     }
 }
 

@@ -87,24 +87,26 @@ fn changes(
 
 /// What must hold as long as a step runs. A resumed action protects what it did before, but for what its
 /// suspension has taken away: a bottle that was set down at the edge no longer stands in its place.
-pub fn protected_by<'p>(problem: &'p Problem, step: &Step) -> Vec<&'p Clause> {
-    let Some(model) = problem.model.actions.get(&step.purpose().name) else {
-        return Vec::new();
-    };
+pub fn protected_by<'p>(
+    problem: &'p Problem,
+    step: &Step,
+) -> impl Iterator<Item = &'p Clause> + use<'p> {
+    let model = problem.model.actions.get(&step.purpose().name);
     let resumed = matches!(step.item, Item::Resume { .. });
-    let suspension = model.suspension.as_ref().filter(|_| resumed);
-    let taken_away = |clause: &&Clause| {
-        let Clause::Fact(wanted, pattern) = clause else {
+    let suspension = model.and_then(|model| model.suspension.as_ref());
+    let suspension = suspension.filter(|_| resumed);
+    let taken_away = move |clause: &Clause| {
+        let (Some(suspension), Clause::Fact(wanted, pattern)) = (suspension, clause) else {
             return false;
         };
         let change = Change::from(pattern.clone());
-        suspension.is_some_and(|suspension| match wanted {
+        match wanted {
             true => suspension.effect.remove.contains(&change),
             false => suspension.effect.add.contains(&change),
-        })
+        }
     };
-    let clauses = model.protected.iter();
-    clauses.filter(|clause| !taken_away(clause)).collect()
+    let clauses = model.into_iter().flat_map(|model| &model.protected);
+    clauses.filter(move |clause| !taken_away(clause))
 }
 
 /// In words, the first of a step's protected states that does not hold.
@@ -115,8 +117,8 @@ pub fn broken_protection(problem: &Problem, step: &Step) -> Option<String> {
         delta: &delta,
     };
     let bindings = bind_arguments(&step.purpose().args, &[]);
-    let mut protected = protected_by(problem, step).into_iter();
-    protected.find_map(|clause| view.check(std::slice::from_ref(clause), &bindings).err())
+    let check = |clause| view.check(std::slice::from_ref(clause), &bindings);
+    protected_by(problem, step).find_map(|clause| check(clause).err())
 }
 
 /// In words, the first of an action's goal states that does not hold.
