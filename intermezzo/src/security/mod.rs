@@ -131,42 +131,49 @@ pub(crate) fn check_team(
     place: &Path,
 ) -> Result<(), Failure> {
     let (dir, place) = (folder.display(), place.display());
+    if !folder.is_dir() {
+        let what = format!("there is no folder {dir}");
+        return Err(Failure::bad_input(what).advice(format_args!(
+            "`intermezzo certs {dir} {place}` makes it, with certificates for this team"
+        )));
+    }
     let command = match folder.join(passwords::LIST).exists() {
         true => "passwords",
         false => "certs",
     };
     let anew =
         format!("`intermezzo {command} {dir} {place} --force` makes everything anew for this team");
+    // Where the router is elsewhere, its rules are, too; and whoever has written their own knows better.
+    let router = folder.join(ROUTER_FILE);
+    let known = std::fs::read_to_string(&router).ok();
+    let known = known.and_then(|text| team::vehicles(&text).ok());
     let missing = |name: &&str| !configuration_of(folder, name).exists();
     let names = vehicles.iter().map(String::as_str);
     if let Some(name) = std::iter::once(executor_sim::ROOM)
         .chain(names)
         .find(missing)
     {
-        let what = format!("{dir} has nothing for `{name}`");
-        let failure = Failure::bad_input(what);
-        return Err(match name {
-            executor_sim::ROOM => failure.advice(anew),
-            vehicle => failure.advice(format_args!(
-                "`intermezzo {command} {dir} --vehicle {vehicle}` lets one vehicle more in; {anew}"
-            )),
-        });
+        let failure = Failure::bad_input(format_args!("{dir} has nothing for `{name}`"));
+        if name == executor_sim::ROOM {
+            return Err(failure.advice(anew));
+        }
+        let force = match &known {
+            Some(known) if known.contains(name) => " --force",
+            _ => "",
+        };
+        return Err(failure.advice(format_args!(
+            "`intermezzo {command} {dir} --vehicle {name}{force}` makes what it takes; {anew}"
+        )));
     }
-    let router = folder.join(ROUTER_FILE);
-    // Where the router is elsewhere, its rules are, too; and whoever has written their own knows better.
-    let Ok(text) = std::fs::read_to_string(&router) else {
+    let Some(known) = known else {
         return Ok(());
     };
-    let Ok(known) = team::vehicles(&text) else {
-        return Ok(());
-    };
-    let unknown = vehicles.difference(&known).next();
-    let what = match unknown {
-        Some(name) => format!("the rules in {} do not know `{name}`", router.display()),
+    let router = router.display();
+    let what = match vehicles.difference(&known).next() {
+        Some(name) => format!("the rules in {router} do not know `{name}`"),
         None if known.first() == vehicles.first() => return Ok(()),
         None => format!(
-            "by the rules in {} goals for whoever can do them are taken by {}, which is none of this team",
-            router.display(),
+            "by the rules in {router} goals for whoever can do them are for {}, which is none of this team",
             known.first().map_or("nobody", String::as_str),
         ),
     };
@@ -271,6 +278,37 @@ mod tests {
             assert_eq!(written, ready.router);
             assert_eq!(team::vehicles(ready.router), Ok(vehicles));
         }
+    }
+
+    #[test]
+    fn a_team_is_told_what_its_folder_lacks_and_what_to_type() {
+        let parent = tempfile::tempdir().unwrap();
+        let folder = parent.path().join("keys");
+        let place = Path::new("cafe");
+        let names = |names: &[&str]| -> BTreeSet<String> {
+            names.iter().map(|name| (*name).to_owned()).collect()
+        };
+        let lacks = |vehicles: &[&str]| match check_team(&folder, &names(vehicles), place) {
+            Ok(()) => String::new(),
+            Err(failure) => format!("{}; {}", failure.what, failure.advice.unwrap_or_default()),
+        };
+        let touch = |name: &str| std::fs::write(folder.join(name), TLS.router).unwrap();
+        assert!(lacks(&["k1"]).contains("certs"), "{}", lacks(&["k1"]));
+        std::fs::create_dir(&folder).unwrap();
+        assert!(lacks(&["k1"]).contains("nothing for `room`"));
+        for name in ["room.json5", "k1.json5", "k2.json5"] {
+            touch(name);
+        }
+        assert_eq!(lacks(&["k1", "k2"]), "", "the router is elsewhere");
+        touch(ROUTER_FILE);
+        assert_eq!(lacks(&["k1", "k2"]), "");
+        assert!(lacks(&["k1", "k3"]).contains("--vehicle k3 --force`"));
+        assert!(lacks(&["k1", "k9"]).contains("--vehicle k9`"));
+        assert!(lacks(&["k2"]).contains("are for k1, which is none of this team"));
+        touch("k9.json5");
+        assert!(lacks(&["k1", "k9"]).contains("do not know `k9`"));
+        std::fs::write(folder.join(passwords::LIST), "").unwrap();
+        assert!(lacks(&["k1", "k8"]).contains("intermezzo passwords "));
     }
 
     #[test]
