@@ -457,3 +457,38 @@ fn a_task_that_cannot_be_gone_on_with_is_given_back_and_done_by_one_who_can() {
         told(&events)
     );
 }
+
+#[test]
+fn the_last_bottle_brought_for_a_guest_who_has_gone_is_brought_to_the_next() {
+    let restaurant = Restaurant::of_the_paper();
+    let mut team = team(&restaurant);
+    team.run_until(at(3.0));
+    team.change(vec![add("wants", &["ben", "cola"])]);
+    for (guest, table) in [("ann", "table1"), ("ben", "table2")] {
+        team.change(vec![add("seated", &[guest, table])]);
+        ask(&mut team, guest, Atom::new("serve", ["cola", guest]));
+    }
+    let mut events = Vec::new();
+    let stowed = |event: &(Symbol, Event)| does(event, "k3", "put-on-tray", true);
+    run_until(&mut team, &mut events, at(600.0), stowed);
+    let grasped = events.iter().find_map(|(_, event)| match &event.what {
+        Happening::ActionFinished { action, .. } if action.name == "grasp" => Some(&action.args),
+        _ => None,
+    });
+    let grasped = grasped.expect("it is on the tray").clone();
+    let (other, next) = match (grasped[0].as_str(), grasped[1].as_str()) {
+        ("cola1", "ann") => ("cola2", "ben"),
+        ("cola1", _) => ("cola2", "ann"),
+        (_, "ann") => ("cola1", "ben"),
+        _ => ("cola1", "ann"),
+    };
+    // Both are on its mind from now on: to take it back, and to bring it to the other guest.
+    let hand = FactChange::Remove(fact("holding", &[other]));
+    let place = FactChange::Remove(fact("stands", &[other, "kitchen"]));
+    let edge = FactChange::Remove(fact("edge", &[other, "kitchen"]));
+    team.change(vec![hand, place, edge, add("gone", &[grasped[1].as_str()])]);
+    run_until(&mut team, &mut events, at(900.0), |(_, event)| {
+        event.goal == Some(next.into()) && event.what == Happening::GoalSucceeded
+    });
+    assert_eq!(served(&team), [("k3".into(), next.into())]);
+}
