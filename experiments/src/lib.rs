@@ -23,8 +23,8 @@ pub use onlooker::Onlooker;
 pub use replanning::{PAPER_MACHINE, PAPER_ROWS, PaperRow, replanning};
 pub use report::{Report, WriteError};
 pub use restaurant::{
-    CHANCE, Case, Course, Deed, PAPER_WAITS_S, RATIO_BAND, ROOM, Restaurants, Team, both_cases,
-    restaurant,
+    CHANCE, Case, Course, Deed, Noise, NoiseRates, PAPER_WAITS_S, RATIO_BAND, ROOM, Restaurants,
+    Team, both_cases, restaurant,
 };
 pub use scaling::{MeasureMemory, SIZES, Scaling, memory_after_an_interruption, scaling};
 pub use summary::Summary;

@@ -2,6 +2,7 @@
 
 mod course;
 mod crew;
+mod noise;
 mod pictures;
 mod setting;
 mod team;
@@ -11,6 +12,7 @@ use agent_core::model::{Symbol, Time};
 use crate::{Cell, ExperimentError, Onlooker, Report, Summary, Table};
 pub use course::{Course, Deed};
 use crew::serve;
+pub use noise::{Noise, NoiseRates};
 use setting::{FIRST, SECOND, SITS_S, Setting, Way, case_1, case_2, evening};
 pub use team::{ROOM, Team};
 

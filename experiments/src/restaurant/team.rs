@@ -9,6 +9,8 @@ use agent_core::protocol::{
     ActionId, Answer, Event, Input, Instruction, Machine, Output, Reply, Report,
 };
 
+use super::Noise;
+
 /// What the room is called as an executor.
 pub const ROOM: &str = "room";
 
@@ -38,6 +40,12 @@ pub struct Team<R, V: Machine> {
     /// What is kept for a vehicle whose process has died: it is sent until it is acknowledged.
     kept: VecDeque<(Symbol, Symbol, Message<V::Out>)>,
     events: Vec<(Symbol, Event)>,
+    /// What becomes of what vehicles say to each other; nothing, if there is none.
+    noise: Option<Noise>,
+    /// What arrives later, and in which order.
+    late: BTreeMap<(Time, u64), (Symbol, Symbol, V::Out)>,
+    /// Counts what was late.
+    delayed: u64,
 }
 
 impl<R, V, N> Team<R, V>
@@ -56,12 +64,23 @@ where
             on_the_way: VecDeque::new(),
             kept: VecDeque::new(),
             events: Vec::new(),
+            noise: None,
+            late: BTreeMap::new(),
+            delayed: 0,
         };
         let names: Vec<Symbol> = team.vehicles.keys().cloned().collect();
         for name in &names {
             team.meet(name);
         }
         team
+    }
+
+    /// The same, with chance in what vehicles say to all others from now on. What is instructed, answered
+    /// and reported is delivered once and in order, as ever.
+    #[must_use]
+    pub fn with_noise(mut self, noise: Noise) -> Self {
+        self.noise = Some(noise);
+        self
     }
 
     /// The time.
@@ -151,7 +170,19 @@ where
         let vehicles = self.vehicles.iter();
         due.extend(vehicles.map(|(name, vehicle)| (vehicle.wake_at(), name.clone())));
         let next = due.into_iter().filter_map(|(at, who)| Some((at?, who)));
-        let Some((at, who)) = next.map(|(at, who)| (at.max(self.now), who)).min() else {
+        let next = next.map(|(at, who)| (at.max(self.now), who)).min();
+        let late = self.late.first_key_value().map(|(key, _)| *key);
+        if let Some(key) = late.filter(|(at, _)| next.as_ref().is_none_or(|(next, _)| at <= next))
+            && key.0 <= until
+            && let Some((from, to, notice)) = self.late.remove(&key)
+        {
+            self.now = self.now.max(key.0);
+            self.on_the_way
+                .push_back((from, to, Message::Notice(notice)));
+            self.deliver();
+            return true;
+        }
+        let Some((at, who)) = next else {
             return false;
         };
         if at > until {
@@ -219,12 +250,27 @@ where
             self.send(whom, output, |team, notice: N| {
                 let others: Vec<Symbol> = team.vehicles.keys().cloned().collect();
                 for other in others.into_iter().filter(|other| other != whom) {
-                    let message = Message::Notice(notice.clone());
-                    team.on_the_way.push_back((whom.clone(), other, message));
+                    team.say(whom, &other, &notice);
                 }
             });
         }
         reply
+    }
+
+    /// From one vehicle to another, which may or may not hear it.
+    fn say(&mut self, from: &Symbol, to: &Symbol, notice: &N) {
+        let arrivals = self.noise.as_mut().map(Noise::arrivals);
+        for delay in arrivals.unwrap_or_else(|| vec![Time::ZERO]) {
+            let (from, to, notice) = (from.clone(), to.clone(), notice.clone());
+            if delay == Time::ZERO {
+                let message = Message::Notice(notice);
+                self.on_the_way.push_back((from, to, message));
+            } else {
+                self.delayed += 1;
+                let at = (self.now + delay, self.delayed);
+                self.late.insert(at, (from, to, notice));
+            }
+        }
     }
 
     fn send<L>(&mut self, from: &Symbol, output: Output<L>, local: impl Fn(&mut Self, L)) {
