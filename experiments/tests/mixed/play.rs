@@ -226,8 +226,13 @@ impl Evening {
         }
     }
 
+    /// Nothing has changed that nobody has told of.
     fn look(&mut self) {
-        for (who, event) in self.team.take_events() {
+        let new = self.team.take_events();
+        if new.is_empty() {
+            return;
+        }
+        for (who, event) in new {
             if who != ROOM {
                 self.course.note(&who, &event);
             }
