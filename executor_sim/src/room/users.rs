@@ -87,8 +87,8 @@ pub(super) fn follow(things: &mut Things, change: &FactChange) {
     }
 }
 
-/// What the things in a fact are, of which [`follow`] takes notice. `None` if it takes none, whatever they are:
-/// what vehicles do nobody else can do for them.
+/// What the things in a fact are that the room takes notice of when users say it. `None` if it takes none,
+/// whatever they are: what vehicles do nobody else can do for them.
 pub fn about(change: &FactChange) -> Option<&'static [&'static str]> {
     let (fact, so) = match change {
         FactChange::Add(fact) => (fact, true),
