@@ -156,6 +156,7 @@ async fn serve(room: Room, endpoint: String, state: &str) {
             let clock = Clock::of_world(&session, &keys, PATIENCE).await;
             let wiring = Wiring {
                 executors: vec!["room".to_owned()],
+                signs: true,
                 ..Wiring::new(&keys, name, epoch_now())
             };
             let clock = clock.expect("the room is the clock");
