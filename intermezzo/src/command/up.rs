@@ -116,7 +116,9 @@ pub(super) async fn perform(
     let to_the_end = performance.until_done && ending != Ending::Interrupted;
     let (exit, failed) = judge(ending);
     if performance.json {
-        JsonLines.end(now, exit == Exit::Done, &failed);
+        // A story that was broken off has not been told.
+        let told = to_the_end || !performance.until_done;
+        JsonLines.end(now, exit == Exit::Done && told, &failed);
     } else {
         conclude(exit, to_the_end, &failed);
     }

@@ -82,3 +82,16 @@ async fn a_story_with_a_goal_that_cannot_be_ends_with_a_failure() {
         "{failed}"
     );
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_story_that_is_broken_off_has_not_been_told() {
+    let user = User::new().await;
+    let file = user.path().join("story.toml");
+    std::fs::write(&file, "[[event]]\nat_s = 100000\nsay = \"Much later.\"\n").unwrap();
+    let story = ["--scenario", file.to_str().unwrap(), "--until-done"];
+    for (args, told) in [(&story[..], false), (&[][..], true)] {
+        let mut up = user.up(args).await;
+        assert_eq!(up.end_by(Signal::SIGINT).await.code(), Some(0));
+        assert_eq!(up.story.last().unwrap()["success"], told);
+    }
+}
