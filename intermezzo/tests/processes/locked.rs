@@ -35,20 +35,25 @@ async fn forge(connect: &[String], keys: &Path) {
         ("operator", instruction.clone(), &order),
         ("viewer", instruction, &order),
     ] {
-        let file = keys.join(format!("{who}.json5"));
-        let connect = connect.to_vec();
-        let client = Role::Client { connect };
-        let session = session::open(&client, Some(&file)).await.unwrap();
-        session.put(&key, text.as_str()).await.unwrap();
-        let asked = session.get(&key).payload(text.as_str());
-        let asked = asked.timeout(Duration::from_secs(2));
-        let answers = asked.await.unwrap();
-        while let Ok(answer) = timeout(PATIENCE, answers.recv_async()).await.unwrap() {
-            // One that says that nobody has answered in time is no answer.
-            assert!(answer.result().is_err(), "{who} on {key}: {answer:?}");
-        }
-        session::close(session).await;
+        try_in_vain(connect, keys, who, &key, text).await;
     }
+}
+
+/// Puts a text on a key and asks with it, as somebody whose configuration is in `keys`: nobody answers.
+pub async fn try_in_vain(connect: &[String], keys: &Path, who: &str, key: &str, text: &str) {
+    let file = keys.join(format!("{who}.json5"));
+    let connect = connect.to_vec();
+    let client = Role::Client { connect };
+    let session = session::open(&client, Some(&file)).await.unwrap();
+    session.put(key, text).await.unwrap();
+    let asked = session.get(key).payload(text);
+    let asked = asked.timeout(Duration::from_secs(2));
+    let answers = asked.await.unwrap();
+    while let Ok(answer) = timeout(PATIENCE, answers.recv_async()).await.unwrap() {
+        // One that says that nobody has answered in time is no answer.
+        assert!(answer.result().is_err(), "{who} on {key}: {answer:?}");
+    }
+    session::close(session).await;
 }
 
 async fn locked(way: &str) {

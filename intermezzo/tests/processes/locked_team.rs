@@ -1,15 +1,12 @@
 //! A team with locked doors, as its users meet it.
 
 use std::path::Path;
-use std::time::Duration;
 
 use agent_link::Keys;
-use agent_link::session::{self, Role};
 use serde_json::{Value, json};
-use tokio::time::timeout;
 
-use crate::harness::{PATIENCE, User};
-use crate::locked::assert_told_nothing;
+use crate::harness::User;
+use crate::locked::{assert_told_nothing, try_in_vain};
 use crate::team::{restaurant, served, until_done};
 
 /// What one of the team, or a user, tries that it may not: the other vehicle's body, an instruction and an
@@ -57,19 +54,7 @@ async fn forge(connect: &[String], keys: &Path) {
         ("viewer", robot.team("k1").unwrap(), &award),
         ("viewer", k2.goal_normal(), &goal),
     ] {
-        let file = keys.join(format!("{who}.json5"));
-        let connect = connect.to_vec();
-        let client = Role::Client { connect };
-        let session = session::open(&client, Some(&file)).await.unwrap();
-        session.put(&key, text.as_str()).await.unwrap();
-        let asked = session.get(&key).payload(text.as_str());
-        let asked = asked.timeout(Duration::from_secs(2));
-        let answers = asked.await.unwrap();
-        while let Ok(answer) = timeout(PATIENCE, answers.recv_async()).await.unwrap() {
-            // One that says that nobody has answered in time is no answer.
-            assert!(answer.result().is_err(), "{who} on {key}: {answer:?}");
-        }
-        session::close(session).await;
+        try_in_vain(connect, keys, who, &key, text).await;
     }
 }
 
